@@ -46,7 +46,7 @@
 //! | [`layout`] | a checked layout: controls, regions, pages |
 //! | [`source`] | sources of packets: a socket, a simulated floor |
 //! | [`sink`] | outputs for events and samples: OSC, TUIO, JSON lines, sound cards, files |
-//! | `recording` | all inputs of a floor in an MCAP file, and replay from it (feature `record`) |
+//! | `recording` | all inputs of a floor in an MCAP file, and replay from it (features `record` and `replay`) |
 //! | [`wire`] | packets, requests and their limits |
 //! | [`feel`], [`ground`] | haptics: cues, effects, materials, and the renderer of actuator samples |
 //! | [`units`] | newtons, instants |
@@ -83,7 +83,7 @@ pub mod parallel;
 #[cfg(not(feature = "threads"))]
 mod parallel;
 pub mod rate_limit;
-#[cfg(feature = "record")]
+#[cfg(feature = "replay")]
 pub mod recording;
 #[cfg(feature = "net")]
 pub mod runtime;

@@ -1,28 +1,39 @@
 //! The recording of a floor in an MCAP file: all inputs that determine the floor's behaviour, and their replay.
 //!
-//! [`Recorder`] stores the packets, requests and layouts of a floor with their times; [`Recording`] returns them as
+//! `Recorder` stores the packets, requests and layouts of a floor with their times; [`Recording`] returns them as
 //! the input of another. A server asks its input only for these and the time: with the same answers it reports the
-//! same events, bit for bit. `docs/recordings.md` describes the file.
+//! same events, bit for bit. `docs/recordings.md` describes the file. Reading and replay need neither files nor threads
+//! nor a clock, at the maximum speed.
 
 mod bytes;
 mod chunk;
+#[cfg(feature = "record")]
 mod events;
+#[cfg(feature = "record")]
+mod kept;
 mod messages;
 mod order;
+#[cfg(feature = "record")]
 mod pack;
 mod parts;
 mod reader;
+#[cfg(feature = "record")]
 mod recorder;
 mod records;
 mod replay;
+#[cfg(feature = "record")]
 mod restored;
+#[cfg(feature = "record")]
 mod switch;
+#[cfg(feature = "record")]
 mod tap;
-#[cfg(test)]
+#[cfg(all(test, feature = "record"))]
 mod tests;
 mod timeline;
 mod transport;
+#[cfg(feature = "record")]
 mod trim;
+#[cfg(feature = "record")]
 mod writer;
 
 use std::io;
@@ -34,13 +45,17 @@ use crate::schema::Diagnostics;
 use crate::source::log::{END, GAPS, LAYOUT, LAYOUTS, PACKETS, REQUESTS, SILENCE};
 
 pub use reader::Recording;
+#[cfg(feature = "record")]
 pub use recorder::{Recorded, Recorder, WhenBehind};
 pub use records::RecordingBytes;
 pub use replay::{Progress, ReplaySource, Speed};
+#[cfg(feature = "record")]
 pub use switch::RecordingSwitch;
+#[cfg(feature = "record")]
 pub(crate) use tap::{EntrySink, tapped};
 pub use timeline::{MarkKind, Timeline, TimelineMark};
 pub use transport::Transport;
+#[cfg(feature = "record")]
 pub use trim::Trimmed;
 
 /// Topic of the lines of events, beside those of the entries.

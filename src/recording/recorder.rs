@@ -8,15 +8,16 @@ use std::time::Duration;
 
 use super::RecordingError;
 use super::events::{EventLines, JobSink};
+use super::kept::as_kept;
 use super::tap::{EntrySink, tapped};
 use super::writer::{Job, RecordingFile, RecordingHead};
-use crate::floor::{Floor, Geometry};
+use crate::floor::Floor;
 use crate::layout::Layout;
-use crate::schema::{self, Diagnostics};
+use crate::schema;
 use crate::sense::Method;
 use crate::sink::{JsonSink, SinkError, Worker};
 use crate::source::FloorInput;
-use crate::source::log::{Entries, read_layout};
+use crate::source::log::Entries;
 
 /// Behaviour when the disk is slower than the recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -148,11 +149,4 @@ impl EntrySink for Recorder {
     fn count_lost(&self, entries: u64) {
         self.note_lost(entries);
     }
-}
-
-/// The text of `layout`, and the layout that results from parsing it.
-pub(super) fn as_kept(layout: &Layout, geometry: &Geometry) -> Result<(String, Layout), Diagnostics> {
-    let text = schema::write_layout(layout);
-    let layout = read_layout(&text, geometry)?;
-    Ok((text, layout))
 }

@@ -6,7 +6,8 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Duration;
 
 use super::events::{EventLines, JobSink};
-use super::recorder::{BATCH, Recorder, WhenBehind, as_kept};
+use super::kept::as_kept;
+use super::recorder::{BATCH, Recorder, WhenBehind};
 use super::tap::{EntrySink, tapped};
 use super::writer::{Job, RecordingHead};
 use super::{RecordingError, restored};

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::recorder::as_kept;
+use super::kept::as_kept;
 use crate::floor::Geometry;
 use crate::layout::Layout;
 use crate::source::log::{Entries, LogEntry};

@@ -9,9 +9,9 @@ use std::time::Duration;
 
 use super::RecordingError;
 use super::events::time_of;
+use super::kept::as_kept;
 use super::messages::LogPart;
 use super::reader::Recording;
-use super::recorder::as_kept;
 use super::writer::{RecordingFile, RecordingHead};
 use crate::schema;
 use crate::source::log::LogEntry;

@@ -175,6 +175,18 @@ impl FoundBoard {
         (self.packets > 1 && seconds > 0.0).then(|| (self.packets - 1) as f64 / seconds)
     }
 
+    /// Returns the number of its packets so far.
+    #[must_use]
+    pub const fn packets(&self) -> u64 {
+        self.packets
+    }
+
+    /// Returns the arrival of its last packet.
+    #[must_use]
+    pub const fn last(&self) -> Instant {
+        self.span.1
+    }
+
     /// Returns the greatest of its readings so far.
     #[must_use]
     pub fn greatest(&self) -> f64 {

@@ -26,12 +26,15 @@ CALM_S, FRAMES = 0.04, 12
 class Window(Display):
     """`underfoot preview` with `arguments`, its state and its files in a folder of their own; ends with `close`.
 
+    `command` is another command of the program with a window, and `arguments` all that follows it.
+
     `actions` lists what a user did, and `count` counts it: each click, drag, key chord and typed word is one. With
     `pictures`, each entry has a picture in the folder `shots`. The screen has `beside` pixels more at the right, as for
     a projector.
     """
 
-    def __init__(self, program, arguments, folder=None, shots=None, size=SIZE, env=None, beside=0):
+    def __init__(self, program, arguments, folder=None, shots=None, size=SIZE, env=None, beside=0,
+                 command=None):
         if lacks := missing(*PROGRAMS):
             sys.exit(f"{', '.join(lacks)} missing: apt-get install xvfb xdotool imagemagick")
         self.folder = folder or tempfile.mkdtemp(prefix="underfoot-design-")
@@ -43,7 +46,8 @@ class Window(Display):
         super().__init__((size[0] + beside, size[1]), {
             "XDG_STATE_HOME": os.path.join(self.folder, "state"), "XDG_DATA_HOME": os.path.join(self.folder, "data"),
             VARIABLE: self.reports, **(env or {})})
-        self.program = subprocess.Popen([program, "preview", *arguments, "--no-osc", "--json"], env=self.env,
+        self.program = subprocess.Popen([program, *(command or ["preview"]), *arguments,
+                                         *([] if command else ["--no-osc", "--json"])], env=self.env,
                                         cwd=self.folder, stdout=open(os.path.join(self.folder, "events"), "w"),
                                         stderr=open(os.path.join(self.folder, "messages"), "w"))
         self.id = self.appeared("underfoot")

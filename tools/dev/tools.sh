@@ -22,6 +22,7 @@ tool_packages() {
     compgen -G '/usr/lib/*/alsa-lib/libasound_module_pcm_jack.so' >/dev/null || echo libasound2-plugins
     # Real windows with real input, on a display of their own.
     has Xvfb || echo xvfb
+    has openbox || echo openbox
     has xdotool || echo xdotool
     has xclip || echo xclip
     grep -q 'libGL\.so\.1' <<<"$found" || echo libgl1

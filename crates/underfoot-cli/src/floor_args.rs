@@ -55,14 +55,20 @@ pub(crate) fn grid(text: &str) -> Result<Geometry, String> {
 /// Writes the floor file, keeps its previous content as a backup, and reports both on standard error.
 pub(crate) fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, Failure> {
     let saved = schema::save_floor(floor, path)?;
-    match &saved {
-        Saved::New => errln!("Written to {}.", path.display()),
-        Saved::Unchanged => errln!("{} holds all this already.", path.display()),
+    errln!("{}", saved_words(&saved, path));
+    Ok(saved)
+}
+
+/// Says where a floor is, and what the file held before.
+pub(crate) fn saved_words(saved: &Saved, path: &Path) -> String {
+    let path = path.display();
+    match saved {
+        Saved::New => format!("Written to {path}."),
+        Saved::Unchanged => format!("{path} holds all this already."),
         Saved::Replaced { backup } => {
-            errln!("Written to {}; what it held before is in {}.", path.display(), backup.display());
+            format!("Written to {path}; what it held before is in {}.", backup.display())
         }
     }
-    Ok(saved)
 }
 
 /// A floor file for the result of some work, and its content at the start.

@@ -27,12 +27,14 @@ mod fonts;
 mod guardian;
 mod latency;
 mod layout_args;
+mod linked;
 mod man;
 mod measure;
 #[cfg(feature = "lab")]
 mod meter;
 mod number;
 mod outputs;
+mod people;
 #[cfg(feature = "lab")]
 mod plan;
 mod play;
@@ -89,7 +91,8 @@ enum Command {
     Run(Box<run::Args>),
     /// Play a scenario on a simulated floor in a process of its own, sending real packets.
     Simulate(simulate::Args),
-    /// Play the built-in session without a window and leave a picture, a sound file and an event log.
+    /// Play the built-in session, or the visit in a link, without a window and leave a picture, a sound file and an event
+    /// log.
     Session(session::Args),
     /// Replay a recorded floor: the same events, at any speed.
     Replay(replay::Args),

@@ -67,6 +67,12 @@ impl ListenArgs {
 }
 
 impl BoardArgs {
+    /// The senders and ports of the floor file, also without ports that are not plugged in.
+    #[cfg(feature = "preview")]
+    pub(crate) fn awaiting_ports() -> Self {
+        Self { await_ports: true, ..Self::default() }
+    }
+
     /// Whether serial ports are given.
     #[cfg(feature = "preview")]
     pub(crate) const fn have_ports(&self) -> bool {

@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use underfoot::engine::Snapshot;
 use underfoot::feel::{RendererConfig, renderer};
+use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::recording::{Recorded, Recorder, WhenBehind};
 use underfoot::schema;
@@ -19,7 +20,7 @@ use underfoot::units::Instant;
 use underfoot::widget::Value;
 use underfoot_scene::picture;
 use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
-use underfoot_sim::{Pace, Script, SimulatedSource};
+use underfoot_sim::{Pace, SimulatedSource};
 
 use super::failure::Failure;
 use super::fault_args::FaultArgs;
@@ -28,7 +29,8 @@ use super::fonts::fonts;
 use super::layout_args::LayoutArgs;
 use super::output::Results;
 use super::outputs::{PrefixArg, TuioArgs, osc_target};
-use super::play::{self, SimArgs};
+use super::people::{People, Scenery, link_in};
+use super::play::SimArgs;
 use super::run::whole;
 use super::stop::stop_flag;
 
@@ -50,9 +52,12 @@ pub(crate) struct Args {
     /// Send events and contacts as OSC as well; may be given several times.
     #[arg(long, value_name = "HOST:PORT", value_parser = osc_target)]
     osc: Vec<SocketAddr>,
-    /// Scenario file; without it, the built-in session.
+    /// Scenario file; without it, the built-in session, or the visit of a link in the place of the layout.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
+    /// Print every event as a line of JSON on standard output, and leave no files but that of `--record`.
+    #[arg(long, conflicts_with_all = ["calibrate", "out", "rate"])]
+    json: bool,
     /// Also write the floor file of the simulated floor, calibrated as in a lab, beside the picture.
     #[arg(long)]
     calibrate: bool,
@@ -85,6 +90,7 @@ impl Default for Args {
             faults: FaultArgs::default(),
             osc: Vec::new(),
             scenario: None,
+            json: false,
             calibrate: false,
             out: DEFAULT_OUT.into(),
             record: None,
@@ -93,35 +99,24 @@ impl Default for Args {
     }
 }
 
-/// Plays a scenario on a simulated floor, faster than in real time, and writes a picture, the sound of the actuators
-/// and the events.
+/// Plays a scenario or a visit on a simulated floor, faster than in real time, and writes a picture, the sound of the
+/// actuators and the events, or prints the events.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let stop = stop_flag()?;
-    let floor = args.floor.load()?;
-    let geometry = floor.geometry;
-    let layout = args.layout.load(&geometry)?;
-    let (script, rehearsed) = play::script(args.scenario.as_deref(), &layout, &geometry)?;
-    std::fs::create_dir_all(&args.out).map_err(|error| Failure::File(args.out.clone(), error))?;
-    let file = |name: &str| args.out.join(name);
-    let (sim, floor) = args.sim.build().in_use(&floor)?;
-    if args.calibrate {
-        let described = file("floor.ron");
-        std::fs::write(&described, schema::write_floor(&floor))
-            .map_err(|error| Failure::File(described, error))?;
-    }
-    let (picture, sound, log) = (file("floor.png"), file("actuators.wav"), file("events.jsonl"));
+    let Scenery { floor: wired, layout, people, build, faults } = args.scenery()?;
+    let geometry = wired.geometry;
+    let (sim, floor) = build.in_use(&wired)?;
+    let files = if args.json { None } else { Some(args.files(&floor)?) };
 
-    let source = SimulatedSource::new(sim, Box::new(script.clone()), Pace::FreeRunning);
-    let input = args.faults.wrap(source, rehearsed);
+    let source = SimulatedSource::new(sim, people.driver(), Pace::FreeRunning);
+    let input = args.faults.wrap(source, faults);
     let path = args.record.as_deref();
     let Recorded { recorder, input, floor, layout } =
         Recorder::around(path, input, floor, layout, Method::default(), WhenBehind::Wait)?;
-    let (feel, renderer) = renderer(RendererConfig::of(&floor, args.rate));
-    let lost = Arc::<AtomicU64>::default();
-    let options = WavOptions::default().with_when_full(WhenFull::Wait).with_lost(Arc::clone(&lost));
-    let wav = WavSink::create(&sound, renderer, options)?;
-    let events = File::create(&log).map_err(|error| Failure::File(log.clone(), error))?;
-    let mut told = Fanout::new().with(JsonSink::new(Results(events))?);
+    let mut told = Fanout::new();
+    if args.json {
+        told.push(JsonSink::new(Results(std::io::stdout()))?.waiting());
+    }
     for &osc in &args.osc {
         told.push(OscSink::under(osc, args.prefix.osc_prefix.clone())?);
     }
@@ -129,20 +124,34 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(recorder) = &recorder {
         told.push(recorder.events()?.waiting());
     }
-    let mut server = Server::new(&floor, layout, Method::default(), input)
-        .with_feel(feel, Box::new(wav))
-        .with_events(Box::new(told));
+    let lost = Arc::<AtomicU64>::default();
+    let mut wav = None;
+    if let Some(files) = &files {
+        let (feel, renderer) = renderer(RendererConfig::of(&floor, args.rate));
+        let options = WavOptions::default().with_when_full(WhenFull::Wait).with_lost(Arc::clone(&lost));
+        wav = Some((feel, WavSink::create(&files.sound, renderer, options)?));
+        let log = File::create(&files.log).map_err(|error| Failure::File(files.log.clone(), error))?;
+        told.push(JsonSink::new(Results(log))?.waiting());
+    }
+    let mut server = Server::new(&floor, layout, Method::default(), input).with_events(Box::new(told));
+    if let Some((feel, wav)) = wav {
+        server = server.with_feel(feel, Box::new(wav));
+    }
     let mut camera = Camera::default();
     let mut is_stopped = false;
     while !is_stopped && server.turn()? == Ended::No {
-        camera.look(&server);
+        if files.is_some() {
+            camera.look(&server);
+        }
         is_stopped = stop.load(Ordering::Relaxed);
     }
     let played = server.engine().now();
     let layout = server.engine().layout().clone();
     drop(server);
     let unrecorded = recorder.map(|recorder| recorder.lost());
-    camera.develop(&geometry, &layout, &script, &picture)?;
+    if let Some(files) = &files {
+        camera.develop(&geometry, &layout, &people, &files.picture)?;
+    }
     whole(&lost, "frames")?;
     unrecorded.map_or(Ok(()), |lost| whole(&lost, "entries"))?;
     if is_stopped {
@@ -151,15 +160,58 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             played.secs()
         )));
     }
-    outln!(
-        "Played {:.1} s. What the floor looked like: {}\nWhat its actuators did, a channel per tile: {}\n\
-         What its controls did: {}",
-        script.duration().as_secs_f64(),
-        picture.display(),
-        sound.display(),
-        log.display()
-    );
+    if let Some(SessionFiles { picture, sound, log }) = &files {
+        outln!(
+            "Played {:.1} s. What the floor looked like: {}\nWhat its actuators did, a channel per tile: {}\n\
+             What its controls did: {}",
+            people.duration().as_secs_f64(),
+            picture.display(),
+            sound.display(),
+            log.display()
+        );
+    }
     Ok(())
+}
+
+/// The files that a session leaves.
+struct SessionFiles {
+    picture: PathBuf,
+    sound: PathBuf,
+    log: PathBuf,
+}
+
+impl Args {
+    /// The layout, its floor and the people: of a link, or of the options.
+    fn scenery(&self) -> Result<Scenery, Failure> {
+        let (scenario, build) = (self.scenario.as_deref(), self.sim.build());
+        if let Some(link) = link_in(self.layout.layout.as_deref()) {
+            if self.floor.floor.is_some() || self.floor.grid.is_some() {
+                return Err(Failure::Other(
+                    "the link has its own floor: leave out --floor and --grid".into(),
+                ));
+            }
+            return Scenery::of_link(link, scenario, build);
+        }
+        let floor = self.floor.load()?;
+        let layout = self.layout.load(&floor.geometry)?;
+        Scenery::of_scenario(floor, layout, scenario, build)
+    }
+
+    /// Makes the folder, and writes the floor file into it if it is wanted.
+    fn files(&self, floor: &Floor) -> Result<SessionFiles, Failure> {
+        std::fs::create_dir_all(&self.out).map_err(|error| Failure::File(self.out.clone(), error))?;
+        let file = |name: &str| self.out.join(name);
+        if self.calibrate {
+            let described = file("floor.ron");
+            std::fs::write(&described, schema::write_floor(floor))
+                .map_err(|error| Failure::File(described, error))?;
+        }
+        Ok(SessionFiles {
+            picture: file("floor.png"),
+            sound: file("actuators.wav"),
+            log: file("events.jsonl"),
+        })
+    }
 }
 
 /// Keeps the snapshot of the most informative moment of a session.
@@ -214,12 +266,12 @@ impl Camera {
         self,
         geometry: &underfoot::floor::Geometry,
         layout: &Layout,
-        script: &Script,
+        people: &People,
         path: &Path,
     ) -> Result<(), Failure> {
         let snapshot = self.best.map_or(self.now, |(_, snapshot)| snapshot);
         let mut feet = Vec::new();
-        script.feet_at(snapshot.at, &mut feet);
+        people.feet_at(snapshot.at, &mut feet);
         let shoes: Vec<Shoe> = feet.iter().map(Shoe::from).collect();
         let mut scene = Scene::new();
         let view = View {

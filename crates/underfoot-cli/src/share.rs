@@ -1,16 +1,23 @@
-//! `underfoot share`: a layout as a link, and the layout of a link as files.
+//! `underfoot share`: a layout as a link, with a visit; and the layout of a link as files.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use underfoot::floor::Geometry;
+use underfoot::layout::Layout;
 use underfoot::schema;
-use underfoot_window::link::{LinkError, MAX_TEXT, SharedLayout};
+use underfoot::source::LinkFaults;
+use underfoot_sim::RecordedFeet;
+use underfoot_window::link::{LinkError, MAX_TEXT, SharedLayout, SharedVisit};
 
 use super::failure::Failure;
 use super::floor_args::grid;
 use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
+#[cfg(feature = "preview")]
+use super::linked::{LinkedVisit, geometry_of};
+use super::play;
+use super::quality_arg::QualityArg;
 
 /// Options of `underfoot share`.
 #[derive(clap::Args, Debug)]
@@ -24,6 +31,16 @@ pub(crate) struct Args {
     /// and goes behind the address of any such page or into `underfoot preview`.
     #[arg(long, value_name = "URL", default_value = "", hide_default_value = true)]
     page: String,
+    /// Also put a visit into the link: the feet of the scenario in this file, or of the visit in the link in this file;
+    /// `session` for the built-in session, or a visit to each control of a layout that it does not fit. The
+    /// link then shows the feet on a simulated floor.
+    #[arg(long, value_name = "FILE")]
+    visit: Option<PathBuf>,
+    #[command(flatten)]
+    quality: QualityArg,
+    /// Seed of the floor of the visit: it determines sensors and noise.
+    #[arg(long, default_value_t = 1, requires = "visit")]
+    seed: u64,
 }
 
 impl From<LinkError> for Failure {
@@ -37,10 +54,41 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let geometry = args.grid.unwrap_or_default();
     let shared =
         SharedLayout { grid: args.grid.map(|grid| (grid.columns(), grid.rows())), ..read(&args.layout)? };
-    let fragment = shared.with_used_only(&geometry)?.fragment()?;
+    let mut shared = shared.with_used_only(&geometry)?;
+    if let Some(file) = &args.visit {
+        let layout =
+            schema::parse_layout(&shared.text, &shared.name, &shared.all_kinds()?, &geometry)?.layout;
+        shared.visit = Some(args.visit(file, &layout, &geometry)?);
+    }
+    let fragment = shared.fragment()?;
     let page = args.page.split('#').next().unwrap_or_default();
     outln!("{page}{fragment}");
     Ok(())
+}
+
+/// Name of the built-in visits in place of a file.
+const SESSION: &str = "session";
+
+/// Maximum length of a file with a link, in bytes.
+const MAX_LINK: u64 = 1 << 20;
+
+impl Args {
+    /// The visit in `file` to `layout`.
+    fn visit(&self, file: &Path, layout: &Layout, geometry: &Geometry) -> Result<SharedVisit, Failure> {
+        let is_session = file.to_str() == Some(SESSION) && !file.exists();
+        if !is_session
+            && let Ok(text) = schema::read_bounded(file, MAX_LINK)
+            && let Ok(linked) = SharedLayout::of_link(&text)
+        {
+            let lacks = || Failure::Other(format!("{}: the link has no visit", file.display()));
+            return linked.visit.ok_or_else(lacks);
+        }
+        let (mut script, faults) = play::script((!is_session).then_some(file), layout, geometry)?;
+        if faults != LinkFaults::default() {
+            errln!("The faults of the scenario are not in the link: it has the feet alone.");
+        }
+        Ok(SharedVisit::new(&RecordedFeet::of(&mut script), self.quality.quality, self.seed)?)
+    }
 }
 
 /// The texts of the layout, and of all kinds and effects beside it.
@@ -55,10 +103,15 @@ fn read(files: &LayoutArgs) -> Result<SharedLayout, Failure> {
             (name.to_owned(), schema::builtin_layout(name).unwrap_or_default().to_owned())
         }
     };
+    Ok(SharedLayout { name, text, ..own_texts(files)? })
+}
+
+/// The texts of all kinds and effects beside the layout, as a layout without a text.
+pub(crate) fn own_texts(files: &LayoutArgs) -> Result<SharedLayout, Failure> {
     let texts =
         |folder: Option<PathBuf>| folder.map_or_else(|| Ok(BTreeMap::new()), |folder| texts_in(&folder));
     let (kinds, effects) = (texts(files.kinds_folder())?, texts(files.effects_folder())?);
-    Ok(SharedLayout { name, text, grid: None, kinds, effects })
+    Ok(SharedLayout { kinds, effects, ..SharedLayout::default() })
 }
 
 fn text_at(path: &Path) -> Result<String, Failure> {
@@ -87,22 +140,25 @@ fn texts_in(folder: &Path) -> Result<BTreeMap<String, String>, Failure> {
     Ok(texts)
 }
 
-/// Whether an argument in place of a layout is a link.
+/// The files of a link.
 #[cfg(feature = "preview")]
-pub(crate) fn is_link(argument: &Path) -> bool {
-    let is_address = |text: &str| text.contains("://") || text.contains('#') && !text.ends_with(".ron");
-    argument.to_str().is_some_and(is_address) && !argument.exists()
+pub(crate) struct Unpacked {
+    /// The layout.
+    pub(crate) layout: PathBuf,
+    /// The size of its floor; `None` for the usual one.
+    pub(crate) geometry: Option<Geometry>,
+    /// The visit to it.
+    pub(crate) visit: Option<LinkedVisit>,
 }
 
-/// Writes the files of a link into a folder of their own below `state`; returns the path of the layout, and the size
-/// of its floor.
+/// Writes the files of a link into a folder of their own below `state`.
 ///
 /// A folder in which the user has changed something stays as it is: the files then go into another one.
 #[cfg(feature = "preview")]
-pub(crate) fn unpack(link: &str, state: &Path) -> Result<(PathBuf, Option<Geometry>), Failure> {
+pub(crate) fn unpack(link: &str, state: &Path) -> Result<Unpacked, Failure> {
     let shared = SharedLayout::of_link(link)?;
-    let geometry = shared.grid.map(|(columns, rows)| Geometry::of_paper_tiles(columns, rows)).transpose();
-    let geometry = geometry.map_err(|error| Failure::Other(format!("the floor of the link: {error}")))?;
+    let (geometry, visit) = (geometry_of(&shared)?, LinkedVisit::of(&shared)?);
+    let unpacked = |layout| Unpacked { layout, geometry, visit };
     let name = file_name(&shared.name, "layout");
     let stem = name.trim_end_matches(".ron");
     for number in 1.. {
@@ -123,10 +179,10 @@ pub(crate) fn unpack(link: &str, state: &Path) -> Result<(PathBuf, Option<Geomet
                 std::fs::create_dir_all(into).map_err(|error| Failure::File(into.into(), error))?;
                 schema::save_text(text, path)?;
             }
-            return Ok((layout, geometry));
+            return Ok(unpacked(layout));
         }
         if files.iter().all(is_as_sent) {
-            return Ok((layout, geometry));
+            return Ok(unpacked(layout));
         }
     }
     Err(Failure::Other("there are too many folders of links".into()))
@@ -159,7 +215,7 @@ mod tests {
     fn a_link_is_unpacked_once_and_never_over_what_the_user_has_changed() {
         let state = tempfile::tempdir().unwrap();
         let link = shared("room.ron", "one").fragment().unwrap();
-        let unpacked = || unpack(&link, state.path()).unwrap().0;
+        let unpacked = || unpack(&link, state.path()).unwrap().layout;
         let first = unpacked();
         assert_eq!(first, state.path().join("links/room/room.ron"));
         assert_eq!(unpacked(), first);
@@ -172,22 +228,13 @@ mod tests {
     fn names_in_a_link_lead_out_of_no_folder() {
         let state = tempfile::tempdir().unwrap();
         let link = shared("../../../etc/passwd", "x").fragment().unwrap();
-        let (path, _) = unpack(&link, state.path()).unwrap();
+        let path = unpack(&link, state.path()).unwrap().layout;
         assert_eq!(path, state.path().join("links/etcpasswd/etcpasswd.ron"));
         assert!(state.path().join("links/etcpasswd/effects/thud.ron").exists());
         for (sent, name) in
             [("..", "layout.ron"), ("", "layout.ron"), (".ron", "layout.ron"), ("süd 2.ron", "süd 2.ron")]
         {
             assert_eq!(file_name(sent, "layout"), name);
-        }
-    }
-
-    #[test]
-    fn a_path_is_no_link_and_an_address_is_one() {
-        for (argument, is) in
-            [("map", false), ("rooms/a#1.ron", false), ("#1.abc", true), ("https://a.example/#x", true)]
-        {
-            assert_eq!(is_link(Path::new(argument)), is, "{argument}");
         }
     }
 }

@@ -45,6 +45,8 @@ record! {
     pub(super) foot_m: f32 = "foot_m", num(0.1..=0.4) => Person::default().foot_length_m;
     /// Walking speed.
     pub(super) speed_m_s: f32 = "speed_m_s", num(0.4..=2.0) => Person::default().speed_m_s;
+    /// Distance between the middles of the feet while standing.
+    pub(super) stand_m: f32 = "stand_m", num(0.08..=0.6) => Person::default().stand_width_m;
 }
 
 choices! {
@@ -242,13 +244,18 @@ impl Named for Side {
 
 impl PersonRecord {
     fn of(person: &Person) -> Self {
-        Self { mass_kg: person.mass_kg, foot_m: person.foot_length_m, speed_m_s: person.speed_m_s }
+        Self {
+            mass_kg: person.mass_kg,
+            foot_m: person.foot_length_m,
+            speed_m_s: person.speed_m_s,
+            stand_m: person.stand_width_m,
+        }
     }
 
     /// Returns the person with these measures and the default values for the rest.
     pub(super) fn person(&self) -> Person {
-        let Self { mass_kg, foot_m, speed_m_s } = *self;
-        Person { mass_kg, foot_length_m: foot_m, speed_m_s, ..Person::default() }
+        let Self { mass_kg, foot_m, speed_m_s, stand_m } = *self;
+        Person { mass_kg, foot_length_m: foot_m, speed_m_s, stand_width_m: stand_m, ..Person::default() }
     }
 }
 

@@ -49,13 +49,15 @@ pub(super) struct FloorClock {
 struct State {
     /// The host's microseconds in which the floor's time stood still; before the first packet, the maximum.
     paused_us: AtomicU64,
+    /// Microseconds by which the simulation has overtaken the host's clock.
+    ahead_us: AtomicU64,
     /// The floor's time at the end of the simulation so far, in microseconds.
     simulated_us: AtomicU64,
 }
 
 impl FloorClock {
     pub(super) fn new(host: Arc<dyn Host>) -> Self {
-        let state = State { paused_us: AtomicU64::new(u64::MAX), simulated_us: AtomicU64::new(0) };
+        let state = State { paused_us: AtomicU64::new(u64::MAX), ..State::default() };
         Self { host, state: Arc::new(state) }
     }
 
@@ -70,17 +72,21 @@ impl FloorClock {
         // In this order: a reader that sees the later of two simulated moments also sees the pause before it.
         let simulated = self.state.simulated_us.load(Ordering::Acquire);
         let paused = self.state.paused_us.load(Ordering::Acquire);
-        let running = micros(self.host.elapsed()).saturating_sub(paused);
+        let ahead = self.state.ahead_us.load(Ordering::Acquire);
+        let running = micros(self.host.elapsed()).saturating_sub(paused).saturating_add(ahead);
         Instant::from_micros(running.min(simulated.saturating_add(micros(CATCH_UP))))
     }
 
     /// Records that the floor is simulated up to `at`; the part of the host's lead beyond [`CATCH_UP`] becomes a
-    /// pause.
+    /// pause. A floor that is simulated ahead of the clock moves the clock on.
     pub(super) fn simulated(&self, at: Instant) {
         let paused = self.state.paused_us.load(Ordering::Relaxed);
-        let ahead = micros(self.host.elapsed()).saturating_sub(paused);
-        let excess = ahead.saturating_sub(at.micros().saturating_add(micros(CATCH_UP)));
+        let ahead = self.state.ahead_us.load(Ordering::Relaxed);
+        let running = micros(self.host.elapsed()).saturating_sub(paused).saturating_add(ahead);
+        let excess = running.saturating_sub(at.micros().saturating_add(micros(CATCH_UP)));
         self.state.paused_us.store(paused.saturating_add(excess), Ordering::Release);
+        let lead = at.micros().saturating_sub(running);
+        self.state.ahead_us.store(ahead.saturating_add(lead), Ordering::Release);
         self.state.simulated_us.store(at.micros(), Ordering::Release);
     }
 
@@ -142,6 +148,18 @@ pub(crate) mod tests {
         (42..=90).for_each(|ms| clock.simulated(Instant::from_millis(ms)));
         host.pass(Duration::from_millis(10));
         assert_eq!(clock.now(), Instant::from_millis(101), "it runs on with the host");
+    }
+
+    #[test]
+    fn a_floor_that_is_simulated_ahead_moves_the_clock_on() {
+        let host = ByHand::default();
+        let clock = FloorClock::new(Arc::new(host.clone()));
+        clock.start();
+        host.pass(Duration::from_millis(10));
+        clock.simulated(Instant::from_millis(9000));
+        assert_eq!(clock.now(), Instant::from_millis(9000));
+        host.pass(Duration::from_millis(7));
+        assert_eq!(clock.now(), Instant::from_millis(9007), "it runs on from there");
     }
 
     #[test]

@@ -43,6 +43,8 @@ pub struct SimulatedSource {
     board: usize,
     /// Time stamp of this millisecond's packets.
     received: Instant,
+    /// The moment up to which nobody waits for the clock.
+    hurries_to: Instant,
     over: bool,
 }
 
@@ -89,8 +91,16 @@ impl SimulatedSource {
             visited: 0,
             board,
             received: Instant::START,
+            hurries_to: Instant::START,
             over: false,
         }
+    }
+
+    /// The same floor, simulated as fast as packets are requested up to `at`, and then at its pace.
+    #[must_use]
+    pub fn hurrying_to(mut self, at: Instant) -> Self {
+        self.hurries_to = at;
+        self
     }
 
     /// The clock that stamps the packets of a floor at [`Pace::RealTime`], for other threads; a free-running floor's
@@ -118,6 +128,9 @@ impl SimulatedSource {
     fn wait(&mut self, due: Instant, patience: Duration) -> bool {
         let Clock::Host(clock) = &self.clock else { return true };
         clock.start();
+        if due < self.hurries_to {
+            return true;
+        }
         let mut left = due.since(clock.now());
         if !left.is_zero() {
             if self.ticks > self.visited + EMPTY_MS {
@@ -310,6 +323,24 @@ mod tests {
             assert_eq!(next().received.since(began), Duration::from_millis(101));
             assert!(host.elapsed().abs_diff(host_began).abs_diff(Duration::from_millis(101)) < CATCH_UP);
         }
+    }
+
+    #[test]
+    fn a_floor_hurries_to_a_moment_and_keeps_its_pace_from_there() {
+        let host = ByHand::default();
+        let floor = Floor::of(Geometry::of_paper_tiles(6, 1).unwrap());
+        let floor = SimFloor::new(&floor, SimConfig::default(), 8);
+        let driver = Box::new(Slide(9000));
+        let source = SimulatedSource::on(floor, driver, Pace::RealTime, Arc::new(host.clone()));
+        let mut source = source.hurrying_to(Instant::from_millis(3000));
+        let clock = source.clock();
+        for ms in 0..3000 {
+            let packet = source.next(Duration::ZERO).unwrap().unwrap();
+            assert_eq!(packet.received, Instant::from_millis(ms));
+        }
+        assert_eq!((host.elapsed(), clock()), (Duration::ZERO, Instant::from_millis(2999)));
+        (0..500).for_each(|_| drop(source.next(Duration::from_millis(5)).unwrap().unwrap()));
+        assert!(host.elapsed().abs_diff(Duration::from_millis(500)) < CATCH_UP, "{:?}", host.elapsed());
     }
 
     /// An empty floor for this many milliseconds, and then one foot.

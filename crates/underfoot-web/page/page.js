@@ -1,6 +1,6 @@
 // Starts the window and its sound, and keeps the page for visits without a network. A page that a floor serves joins it.
 import { mirror } from "./served.js";
-import init, { join, start } from "./underfoot.js";
+import init, { join, open_recording, start, takes_layouts } from "./underfoot.js";
 
 const cover = document.getElementById("cover");
 const state = document.getElementById("state");
@@ -24,11 +24,23 @@ async function filesIn(entry, found) {
   }
 }
 
+// A recording larger than this does not fit into the memory of a page, whose answer names the limit.
+const MOST_BYTES = 2 ** 26;
+
+async function play(path, file) {
+  // One byte more is enough for the answer.
+  open_recording(path, new Uint8Array(await file.slice(0, MOST_BYTES + 1).arrayBuffer()));
+}
+
 addEventListener("drop", async (event) => {
   event.preventDefault();
   const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry);
   const found = [];
   for (const entry of entries) await filesIn(entry, found);
+  // On the floor of a server there is neither a recording nor a visit.
+  const recording = mirror === null && found.length === 1 && found.find(([path]) => path.endsWith(".mcap"));
+  if (recording) return play(...recording);
+  if (mirror === null && !takes_layouts()) return;
   // Of a folder, only what the window can open; a single file of another form gets its own message.
   const texts = found.filter(([path]) => path.endsWith(".ron"));
   const detail = entries.every((entry) => entry.isFile) ? found : texts;

@@ -10,6 +10,7 @@ use underfoot::schema;
 use underfoot::serve::{FloorCommand, Server};
 use underfoot::widget::WidgetId;
 use underfoot::wire::ControlMessage;
+use underfoot_sim::FeetTape;
 use underfoot_window::edit::{self, Document};
 use underfoot_window::preview::{LayoutCause, LayoutNews, Notice, PreviewCommand, Warnings};
 
@@ -31,6 +32,8 @@ pub(crate) struct PageDesk {
     pub(crate) revision: u64,
     /// The controls that a check of the floor has switched off.
     pub(crate) off: Vec<WidgetId>,
+    /// Records feet for a layout.
+    pub(crate) tape: FeetTape,
 }
 
 impl PageDesk {
@@ -107,6 +110,7 @@ impl PageDesk {
 
     fn put(&mut self, layout: &Layout, name: String, warnings: Warnings, cause: LayoutCause) {
         self.revision += 1;
+        self.tape.cut();
         self.give(FloorCommand::SetLayout(Box::new(layout.clone())));
         let (layout, revision) = (Arc::new(layout.clone()), self.revision);
         let _ = self.layouts.try_send(LayoutNews::Loaded { layout, revision, name, cause, warnings });

@@ -45,7 +45,12 @@ pub async fn join(
     let link = Rc::new(RefCell::new(PageLink::new(&window, &path, say)?));
     let mut told = vec![hint];
     match read.transpose() {
-        Ok(shared) => link.borrow_mut().shared = shared,
+        Ok(shared) => {
+            if shared.as_ref().is_some_and(|shared| shared.visit.is_some()) {
+                told.push("The visit of the link plays on a page that no floor serves.".into());
+            }
+            link.borrow_mut().shared = shared;
+        }
         Err(error) => told.push(format!("The layout of the link cannot be shown; {error}")),
     }
     keep(&window, &link)?;

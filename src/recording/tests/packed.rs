@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicU64;
 use std::sync::mpsc::channel;
 
 use super::super::Recording;
-use super::super::recorder::as_kept;
+use super::super::kept::as_kept;
 use super::super::writer::{Job, RecordingFile, RecordingHead};
 use super::build::{OURS, PAGE, Taken, entries, floor, plain, read};
 use crate::schema::{self, Kinds};

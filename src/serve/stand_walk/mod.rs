@@ -2,12 +2,13 @@
 
 mod motion;
 mod outputs;
+mod rest_meter;
 
 use std::time::Duration;
 
 use self::motion::FloorMotion;
 use self::outputs::VoltMeter;
-use super::rest::REST;
+use self::rest_meter::RestMeter;
 use crate::floor::{Floor, SensorId, TileId};
 use crate::sense::{Crossing, MeasuredStand, SensorVolts, StandData, StandingMark};
 use crate::units::Instant;
@@ -22,9 +23,6 @@ const SETTLED: u32 = 100;
 /// Number of moments of a stand: two seconds, longer than most of the sway of a person.
 const STAND: u32 = 400;
 
-/// Standard deviation of an output on the empty floor above which somebody walks on it (V).
-const RESTLESS_V: f64 = 0.1;
-
 /// A walk from mark to mark: at each mark a person stands still for a moment.
 ///
 /// The caller passes every packet. The walk gives the next task, advances by itself, and collects the measurements
@@ -33,8 +31,7 @@ const RESTLESS_V: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub struct StandWalk {
     meter: VoltMeter,
-    rest: Vec<RestVolts>,
-    rested: u32,
+    rest: RestMeter,
     motion: FloorMotion,
     marks: Vec<StandingMark>,
     /// Number of the present mark.
@@ -44,13 +41,6 @@ pub struct StandWalk {
     crossing: Option<Crossing>,
     data: StandData,
     next: Option<Instant>,
-}
-
-/// Mean and variance of one output on the empty floor, by Welford's recurrence.
-#[derive(Clone, Copy, Debug, Default)]
-struct RestVolts {
-    mean: f64,
-    squares: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -107,10 +97,9 @@ impl StandWalk {
     #[must_use]
     pub fn new(floor: &Floor, marks: Vec<StandingMark>) -> Self {
         let meter = VoltMeter::new(floor);
-        let rest = vec![RestVolts::default(); meter.sensors().len()];
+        let rest = RestMeter::new(meter.sensors().len());
         Self {
             rest,
-            rested: 0,
             motion: FloorMotion::default(),
             marks,
             number: 0,
@@ -184,24 +173,16 @@ impl StandWalk {
 
     /// Measures the empty floor.
     fn rest_on(&mut self, volts: &[f32]) {
-        self.rested += 1;
-        let count = f64::from(self.rested);
-        for (rest, volts) in self.rest.iter_mut().zip(volts) {
-            let off = f64::from(*volts) - rest.mean;
-            rest.mean += off / count;
-            rest.squares += off * (f64::from(*volts) - rest.mean);
-        }
-        if self.rested < REST {
+        self.rest.add(volts);
+        if !self.rest.is_done() {
             return;
         }
-        let deviation = |rest: &RestVolts| (rest.squares / count).sqrt();
-        if self.rest.iter().any(|rest| deviation(rest) > RESTLESS_V) {
+        if self.rest.is_walked_on() {
             self.interrupt();
             return;
         }
-        self.motion =
-            FloorMotion::new(self.rest.iter().map(|rest| (rest.mean as f32, deviation(rest) as f32)));
-        let means = self.rest.iter().map(|rest| rest.mean as f32);
+        self.motion = FloorMotion::new(self.rest.outputs());
+        let means = self.rest.outputs().map(|(mean, _)| mean);
         self.data.empty =
             self.meter.sensors().zip(means).map(|(sensor, volts)| SensorVolts { sensor, volts }).collect();
         self.stage = self.way(true);
@@ -214,10 +195,7 @@ impl StandWalk {
     /// Begins anew what the loss of a board or a walker on the empty floor interrupted.
     fn interrupt(&mut self) {
         match &mut self.stage {
-            WalkStage::Rest => {
-                self.rest.fill(RestVolts::default());
-                self.rested = 0;
-            }
+            WalkStage::Rest => self.rest.clear(),
             WalkStage::Way { still, .. } => *still = 0,
             WalkStage::Stand { .. } => self.stage = WalkStage::Way { has_moved: true, still: 0 },
             WalkStage::Done => {}
@@ -279,6 +257,15 @@ impl StandWalk {
             (WalkStage::Way { .. }, Some(mark)) => StandTask::Go(*mark),
             (WalkStage::Stand { .. }, Some(mark)) => StandTask::Stay(*mark),
             (WalkStage::Done | WalkStage::Way { .. } | WalkStage::Stand { .. }, _) => StandTask::Nothing,
+        }
+    }
+
+    /// Returns the share of the present stand that is measured, 0 to 1; 0 between stands.
+    #[must_use]
+    pub fn measured_share(&self) -> f32 {
+        match self.stage {
+            WalkStage::Stand { moments, .. } => moments as f32 / STAND as f32,
+            WalkStage::Rest | WalkStage::Way { .. } | WalkStage::Done => 0.0,
         }
     }
 

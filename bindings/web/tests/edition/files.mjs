@@ -100,7 +100,7 @@ export async function files(browser, home) {
 
   // What is dropped and cannot be opened says why, and the layout stays.
   await next.click("Try");
-  for (const [name, says] of [["broken.ron", "broken.ron"], ["picture.png", "its name ends in .ron"], ["walk.mcap", "recordings"]]) {
+  for (const [name, says] of [["broken.ron", "broken.ron"], ["picture.png", "its name ends in .ron"], ["walk.mcap", "no recording of a floor begins there"]]) {
     await next.drop(at(name));
     await next.says(says);
     await next.widget("Enormous");

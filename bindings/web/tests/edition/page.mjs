@@ -67,9 +67,14 @@ function listen() {
 
 /// A page of the web edition.
 export class Edition {
-  static async open(browser, address) {
+  /** The folder for screenshots, if they are wanted. */
+  static pictures = process.argv[4];
+
+  /** Opens the page; `before` runs in it before its own scripts. */
+  static async open(browser, address, before = () => {}) {
     const page = await browser.newPage();
     await page.evaluateOnNewDocument(listen);
+    await page.evaluateOnNewDocument(before);
     const edition = new Edition(page);
     await page.setViewport({ width: 1280, height: 800, hasTouch: true });
     page.on("pageerror", (error) => edition.errors.push(String(error)));
@@ -94,9 +99,9 @@ export class Edition {
   }
 
   /// The widget called `name` once it is on the screen; its places are in points of the page.
-  async widget(name, role) {
+  async widget(name, role, turns = 300) {
     const fits = (widget) => widget.name === name && (!role || widget.role === role) && widget.seen;
-    for (let turn = 0; turn < 300; turn += 1) {
+    for (let turn = 0; turn < turns; turn += 1) {
       const found = (await this.report())?.widgets.find(fits);
       if (found) return found;
       await this.wait(50);
@@ -168,7 +173,7 @@ export class Edition {
   }
 
   async picture(name) {
-    const folder = process.argv[4];
+    const folder = Edition.pictures;
     if (folder) await this.page.screenshot({ path: path.join(folder, `${name}.png`) });
   }
 }

@@ -4,6 +4,7 @@ mod curves;
 mod map;
 mod plot;
 mod stand;
+mod stand_report;
 mod tare;
 
 use std::path::Path;
@@ -48,7 +49,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 const MOST_BYTES: u64 = 256 << 20;
 
 /// Today, in UTC.
-fn today() -> Day {
+pub(crate) fn today() -> Day {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     Day::of_unix_seconds(since.as_secs())
 }

@@ -5,14 +5,15 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use serde_json::{Value, json};
-use underfoot::floor::{CalibrationRecord, Floor, LawKind, TileId};
-use underfoot::sense::{SensorFit, StandFit, StandingMark};
+use underfoot::floor::{Floor, LawKind, TileId};
+use underfoot::sense::{StandFit, StandingMark};
 use underfoot::serve::{StandNews, StandTask, StandWalk};
 use underfoot::source::SensorSource;
 use underfoot::units::Newtons;
+use underfoot_window::setup::{keep_laws, mark_words};
 
-use super::{Out, count, rounded, say_if_unsaved, today};
+use super::stand_report::{as_json, more, print, print_marks};
+use super::{Out, say_if_unsaved, today};
 use crate::failure::Failure;
 use crate::floor_args::FloorArgs;
 use crate::number::{number, patience, tile};
@@ -84,7 +85,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let weight = Newtons((weight_kg * GRAVITY) as f32);
     let fit = StandFit::of(walk.data(), weight, &floor.geometry, args.law)
         .map_err(|error| Failure::Other(error.to_string()))?;
-    keep(&mut floor, &fit);
+    keep_laws(&mut floor, &fit, today());
     let saved = out.save(&floor)?;
     if args.json {
         outln!("{}", as_json(&fit, &floor, saved.as_ref()));
@@ -134,7 +135,7 @@ fn follow(
             && shown != Some(walk.done())
         {
             (shown, since) = (Some(walk.done()), source.now());
-            outln!("{:>3} of {}: {}", walk.done() + 1, walk.length(), place(&mark, floor));
+            outln!("{:>3} of {}: {}", walk.done() + 1, walk.length(), mark_words(&mark, floor));
         }
         if source.now().since(since) >= wait {
             if let Some(reason) = unheard(walk, source) {
@@ -154,23 +155,6 @@ fn follow(
         }
     }
     Ok(())
-}
-
-/// Describes a mark: tile, place and direction.
-fn place(mark: &StandingMark, floor: &Floor) -> String {
-    let off = 100.0 * (mark.at - floor.geometry.centre(mark.tile));
-    let along = |(way, less, more): (f32, &str, &str)| {
-        (way.abs() >= 0.05).then(|| format!("{:.1} cm {}", way.abs(), if way < 0.0 { less } else { more }))
-    };
-    let ways: Vec<String> =
-        [(off.x, "west", "east"), (off.y, "south", "north")].into_iter().filter_map(along).collect();
-    let place = if ways.is_empty() {
-        "in the middle".to_owned()
-    } else {
-        format!("{} of the middle", ways.join(" and "))
-    };
-    let facing = if mark.facing == 0.0 { "north" } else { "south" };
-    format!("tile {}, {place}, facing {facing}", mark.tile)
 }
 
 /// Reports a stand, with a sound on a terminal: the person looks at the marks.
@@ -198,123 +182,4 @@ fn unheard(walk: &StandWalk, source: &dyn SensorSource) -> Option<String> {
         return Some(format!("the sensor of {sensor} gives no reading"));
     }
     (walk.task() == StandTask::KeepOff).then(|| "the floor is not empty and quiet".to_owned())
-}
-
-/// Stores the new laws and tares in the floor.
-fn keep(floor: &mut Floor, fit: &StandFit) {
-    let day = today();
-    for found in fit.sensors.iter().filter(|found| found.determined > 0) {
-        let record = CalibrationRecord { day, residual: rounded(found.uncertainty) };
-        floor.recalibrate(found.sensor, found.law, Some(record));
-        let tile = floor.geometry.index(found.sensor.tile).and_then(|tile| floor.tare.get_mut(tile));
-        if let Some(tares) = tile {
-            tares[found.sensor.corner.index()] = found.tare;
-        }
-    }
-    if fit.sensors.iter().all(|found| found.determined > 0) {
-        floor.tared = Some(day);
-    }
-}
-
-fn print_marks(marks: &[StandingMark], floor: &Floor, json: bool) {
-    if json {
-        let marks: Vec<_> = marks
-            .iter()
-            .map(|mark| {
-                let (tile, facing) = (mark.tile, if mark.facing == 0.0 { "north" } else { "south" });
-                json!({ "col": tile.column, "row": tile.row, "x_m": mark.at.x, "y_m": mark.at.y, "facing": facing })
-            })
-            .collect();
-        outln!("{}", json!({ "marks": marks }));
-    } else {
-        marks.iter().for_each(|mark| outln!("{}", place(mark, floor)));
-    }
-}
-
-fn print(fit: &StandFit, walk: &StandWalk, floor: &Floor) {
-    let (stands, crossings) = (count(fit.stands, "stand"), count(fit.crossings, "way"));
-    outln!("{stands} and {crossings} between them count. The sensors follow a {} law.", fit.kind.name());
-    outln!(
-        "The sums miss the weight by {:.1} %, the feet their marks by {:.1} cm; the body leans {:.1} cm forwards and \
-         {:.1} cm to the right.",
-        100.0 * fit.weight_residual,
-        100.0 * fit.place_residual_m,
-        100.0 * fit.lean_m.y,
-        100.0 * fit.lean_m.x
-    );
-    if !fit.saturated.is_empty() {
-        let stands = count(fit.saturated.len(), "stand");
-        outln!("{stands} had a sensor at the end of its range, and told less: a lighter person tells more.");
-    }
-    if !fit.astray.is_empty() {
-        let numbers: Vec<String> = fit.astray.iter().map(|number| (number + 1).to_string()).collect();
-        outln!("Left out, because they disagree with all others: stands {}.", numbers.join(", "));
-    }
-    // A neighbour that carried a foot's edge is no part of the walk.
-    let walked = |tile: TileId| walk.marks().iter().any(|mark| mark.tile == tile);
-    let needy: Vec<&SensorFit> = fit.needy().filter(|found| walked(found.sensor.tile)).collect();
-    if needy.is_empty() {
-        return;
-    }
-    outln!("tile      sensor  most, N  uncertain by");
-    for found in needy {
-        let name = floor.geometry.sensor_name(found.sensor.corner);
-        let uncertain = match found.determined {
-            0 => "no law".to_owned(),
-            _ => format!("{:.0} %", 100.0 * found.uncertainty),
-        };
-        outln!("{:<9} {name:<6}  {:>7.0}  {uncertain:>12}", found.sensor.tile.to_string(), found.most.0);
-    }
-}
-
-fn as_json(fit: &StandFit, floor: &Floor, saved: Option<&Value>) -> Value {
-    let sensor = |found: &SensorFit| {
-        json!({
-            "col": found.sensor.tile.column,
-            "row": found.sensor.tile.row,
-            "corner": floor.geometry.sensor_name(found.sensor.corner),
-            "law": found.law.kind().name(),
-            "numbers": found.law.numbers(),
-            "tare_n": found.tare,
-            "most_n": found.most,
-            "uncertainty": found.uncertainty.is_finite().then_some(found.uncertainty),
-            "determined": found.determined,
-            "needs_more": found.needs_more(),
-        })
-    };
-    json!({
-        "law": fit.kind.name(),
-        "laws": fit.laws.iter().map(|laws| json!({
-            "law": laws.kind.name(),
-            "misfit": laws.misfit.is_finite().then_some(laws.misfit),
-        })).collect::<Vec<_>>(),
-        "weight_residual": fit.weight_residual,
-        "place_residual_m": fit.place_residual_m,
-        "lean_m": { "right": fit.lean_m.x, "forwards": fit.lean_m.y },
-        "stands": fit.stands,
-        "crossings": fit.crossings,
-        "astray": fit.astray,
-        "saturated": fit.saturated,
-        "sensors": fit.sensors.iter().map(sensor).collect::<Vec<_>>(),
-        "saved": saved,
-    })
-}
-
-/// The tiles of the walk that need more stands, and how to repeat them.
-fn more(fit: &StandFit, walk: &StandWalk, floor: &Floor) -> Option<String> {
-    let is_good = |tile: TileId| {
-        floor.geometry.sensors(tile).iter().all(|corner| {
-            let own = |found: &&SensorFit| (found.sensor.tile, found.sensor.corner) == (tile, *corner);
-            fit.sensors.iter().find(own).is_some_and(|found| !found.needs_more())
-        })
-    };
-    let mut tiles: Vec<TileId> = walk.marks().iter().map(|mark| mark.tile).collect();
-    tiles.sort_by_key(|tile| floor.geometry.index(*tile));
-    tiles.dedup();
-    tiles.retain(|tile| !is_good(*tile));
-    let list: Vec<String> = tiles.iter().map(|tile| format!("{},{}", tile.column, tile.row)).collect();
-    (!tiles.is_empty()).then(|| {
-        let tiles = count(tiles.len(), "tile");
-        format!("{tiles} need more stands: stand again with --rounds 2, or with --tiles {}", list.join(" "))
-    })
 }

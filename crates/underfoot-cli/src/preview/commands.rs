@@ -9,6 +9,7 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::runtime::{ControlsOff, Session};
 use underfoot::schema::{self, Diagnostics, Saved};
+use underfoot_sim::FeetTape;
 use underfoot_window::edit;
 use underfoot_window::preview::{LayoutCause, LayoutNews, Notice, PreviewCommand, Warnings};
 
@@ -21,6 +22,8 @@ use super::super::watch::FileWatch;
 pub(super) struct Desk {
     pub(super) session: Session,
     pub(super) layouts: SyncSender<LayoutNews>,
+    /// Records feet for a layout; `None` unless the floor is simulated.
+    pub(super) tape: Option<FeetTape>,
 }
 
 impl Desk {
@@ -35,6 +38,9 @@ impl Desk {
     }
 
     fn put(&self, name: &str, cause: LayoutCause, layout: Layout, warnings: Warnings) {
+        if let Some(tape) = &self.tape {
+            tape.cut();
+        }
         let loaded = Arc::new(layout.clone());
         let revision = self.session.set_layout(layout);
         let name = name.to_owned();

@@ -4,6 +4,8 @@ mod commands;
 mod followed;
 mod joined;
 mod layers;
+mod links;
+mod played;
 mod player;
 mod visits;
 
@@ -24,23 +26,24 @@ use underfoot::recording::{Recording, RecordingSwitch};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
-use underfoot::sink::LatencyStages;
+use underfoot::sink::{LatencyStages, Since};
 use underfoot::source::{FloorInput, LinkFaults, TappedPackets};
-use underfoot::units::HostClock;
+use underfoot::units::{HostClock, Instant};
 use underfoot_scene::scene::Show;
 use underfoot_sim::{
-    ArrivalHandle, FaultSwitch, FootDriver, LoopingScript, Pace, RehearsalSource, SimulatedSource, arrivals,
-    feet_by_hand, watched,
+    ArrivalHandle, FaultSwitch, FeetTape, FloorBuild, FootDriver, LoopingScript, Pace, RehearsalSource,
+    SimulatedSource, arrivals, feet_by_hand, go_on_from, taped, watched,
 };
 use underfoot_window::preview::{
     self, DesignInput, FootSink, Mouse, Notice, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
-    ProjectionOptions, ScopeFeed, ShoeFeed, SignalScopes, ToWindow, Warnings, channels, shoes,
+    ProjectionOptions, ScopeFeed, ShareDesk, ShoeFeed, SignalScopes, ToWindow, Warnings, channels, shoes,
 };
 
 use self::commands::{CommandHandler, Desk};
 use self::followed::FollowedFeed;
 use self::joined::Joined;
 use self::layers::read_layers;
+use self::links::ProgramLinks;
 use self::player::ShownRecording;
 use self::visits::Visits;
 use super::actuate::ActuateArgs;
@@ -48,13 +51,14 @@ use super::failure::Failure;
 use super::fault_args::say_what_is_rehearsed;
 use super::floor_args::FloorArgs;
 use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
+use super::linked::{LinkedVisit, is_link};
 use super::output;
 use super::outputs::OutputArgs;
 use super::play::{self, SimArgs};
 use super::run::LISTEN;
 use super::run::end;
 use super::senders::{BoardArgs, CommandArgs};
-use super::share;
+use super::share::{self, Unpacked};
 use super::stop::stop_flag;
 
 /// Options of `underfoot preview`.
@@ -162,8 +166,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(path) = args.recording() {
         return replayed(args, path);
     }
-    if let Some(of_link) = args.of_link()? {
-        return run(&of_link);
+    if let Some((of_link, visit)) = args.of_link()? {
+        return match visit {
+            Some(visit) => played::run(of_link, visit),
+            None => run(&of_link),
+        };
     }
     if let Some(address) = args.join {
         return joined(args, address);
@@ -171,95 +178,127 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(path) = &args.follow {
         return followed(args, path);
     }
-    let floor = match args.real() {
-        Some(_) => args.boards.load(&args.floor)?,
-        None => args.floor.load()?,
-    };
-    let (layout, warnings) = args.layout.reviewed(&floor)?;
-    super::send_args::tell_off(&layout, "only `underfoot run` sends");
-    let stage = args.stage(&floor, &layout)?;
-
-    let (window, ProgramChannels { events, layouts, notices, commands }) = channels();
-    let (scope_sender, scopes) = mpsc::channel();
-
-    // If several sound cards are tried, the last one plays.
-    let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
-    let latency = LatencyStages::default();
-    let told = notices.clone();
-    // The window may be closed.
-    let notice = move |text| drop(told.try_send(Notice::Sound(text)));
-    let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice);
-    let (tap, packets) = TappedPackets::new();
-    let input = tap.wrap(stage.input);
-    let mut session = Session::source(input, stage.clock)
-        .floor(stage.floor.clone())
-        .layout(layout.clone())
-        .method(if args.eq4 { Method::Eq4 } else { Method::default() })
-        .prefix(args.outputs.prefix.osc_prefix.clone())
-        .sink(args.outputs.open(&floor.geometry)?)
-        .sink(ToWindow::new(events))
-        .actuators(actuators)
-        .latency(latency.clone());
-    let switch = RecordingSwitch::default();
-    session = match &args.record {
-        Some(path) => session.record(path),
-        None => session.recording_switch(switch.clone()),
-    };
-    let session = session.start()?;
-    let visits = match &args.record {
-        Some(_) => Visits::off("All is recorded, because the program was started with --record"),
-        None => Visits::of_floor(session.clone(), switch.clone()),
-    };
-    let signals = SignalWatch::start(&session)?;
-
-    let desk = Desk { session: session.clone(), layouts };
-    let watch = desk.watch(&args.layout)?;
-    let choices = args.choices();
-    let handler = CommandHandler {
-        files: args.layout.clone(),
-        watch,
-        choices: choices.clone(),
-        floor,
-        desk,
-        controls_off: None,
-    };
-    handler.process_commands(commands, notices);
-
-    let scopes = scopes.try_iter().last().flatten();
-    let scopes = scopes.map(|reader| Box::new(SignalScopes::new(reader)) as Box<dyn ScopeFeed>);
-    let (floor, layout) = (Arc::new(stage.floor), Arc::new(layout));
-    let input = PreviewInput {
-        warnings: Warnings::from(&warnings),
-        scopes,
-        visit: Some(Box::new(visits)),
-        latency: Some(latency),
-        feet: stage.feet,
-        faults: stage.faults,
-        people: stage.people,
-        packets: Some(packets),
-        shoes: stage.shoes,
-        choices,
-        effects: args.layout.kinds()?.effects().iter().cloned().collect(),
-        design: args.design()?,
-        ..PreviewInput::new(floor, layout, stage.name, session.take_snapshots(), window)
-    };
+    let (live, input) = LiveFloor::start(args, None)?;
     // The floor ends in order, even after a failure of the window.
     let options = args.window();
     let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &options)));
-    switch.end();
-    session.stop();
-    let end = end(&session);
-    drop(signals);
-    match shown.unwrap_or_else(|reason| panic::resume_unwind(reason)) {
-        Ok(()) => match end.kind {
-            Kind::Ended(EndReason::Failed) => Err(Failure::Other(end.message().into())),
-            Kind::Ended(EndReason::Panicked) => {
-                Err(Failure::Other("sensing failed; please report it".into()))
-            }
-            _ => Ok(()),
-        },
-        Err(PreviewError::NoWindow(reason)) => Err(Failure::NoWindow(reason)),
+    live.end(shown)
+}
+
+/// A floor at work behind the window.
+struct LiveFloor {
+    session: Session,
+    switch: RecordingSwitch,
+    signals: SignalWatch,
+}
+
+impl LiveFloor {
+    /// Starts the floor of `args`, after a visit to it if there is one; also returns the input of its window.
+    fn start(args: &Args, after: Option<&AfterVisit>) -> Result<(Self, PreviewInput), Failure> {
+        let floor = match args.real() {
+            Some(_) => args.boards.load(&args.floor)?,
+            None => args.floor.load()?,
+        };
+        let (layout, warnings) = args.layout.reviewed(&floor)?;
+        super::send_args::tell_off(&layout, "only `underfoot run` sends");
+        let stage = args.stage(&floor, &layout, after)?;
+        // Nobody gets the events of the visit once more.
+        let begins = after.map_or(Instant::START, |after| after.at);
+
+        let (window, ProgramChannels { events, layouts, notices, commands }) = channels();
+        let (scope_sender, scopes) = mpsc::channel();
+
+        // If several sound cards are tried, the last one plays.
+        let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
+        let latency = LatencyStages::default();
+        let told = notices.clone();
+        // The window may be closed.
+        let notice = move |text| drop(told.try_send(Notice::Sound(text)));
+        let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice);
+        let (tap, packets) = TappedPackets::new();
+        let input = tap.wrap(stage.input);
+        let mut session = Session::source(input, stage.clock)
+            .floor(stage.floor.clone())
+            .layout(layout.clone())
+            .method(if args.eq4 { Method::Eq4 } else { Method::default() })
+            .prefix(args.outputs.prefix.osc_prefix.clone())
+            .sink(Since::new(args.outputs.open(&floor.geometry)?, begins))
+            .sink(Since::new(ToWindow::new(events), begins))
+            .actuators(actuators)
+            .latency(latency.clone());
+        let switch = RecordingSwitch::default();
+        session = match &args.record {
+            Some(path) => session.record(path),
+            None => session.recording_switch(switch.clone()),
+        };
+        let session = session.start()?;
+        let tape = stage.tape.as_ref().map(|(tape, _)| tape.clone());
+        let visits = match &args.record {
+            Some(_) => Visits::off("All is recorded, because the program was started with --record"),
+            None => Visits::of_floor(session.clone(), switch.clone(), stage.tape),
+        };
+        let signals = SignalWatch::start(&session)?;
+
+        let desk = Desk { session: session.clone(), layouts, tape };
+        let watch = desk.watch(&args.layout)?;
+        let choices = args.choices();
+        let handler = CommandHandler {
+            files: args.layout.clone(),
+            watch,
+            choices: choices.clone(),
+            floor,
+            desk,
+            controls_off: None,
+        };
+        handler.process_commands(commands, notices);
+
+        let scopes = scopes.try_iter().last().flatten();
+        let scopes = scopes.map(|reader| Box::new(SignalScopes::new(reader)) as Box<dyn ScopeFeed>);
+        let (floor, layout) = (Arc::new(stage.floor), Arc::new(layout));
+        let links = ProgramLinks::new(&args.layout, floor.geometry);
+        let input = PreviewInput {
+            warnings: Warnings::from(&warnings),
+            scopes,
+            visit: Some(Box::new(visits)),
+            share: stage.feet.is_some().then(|| Box::new(links) as Box<dyn ShareDesk>),
+            latency: Some(latency),
+            feet: stage.feet,
+            faults: stage.faults,
+            people: stage.people,
+            packets: Some(packets),
+            shoes: stage.shoes,
+            choices,
+            effects: args.layout.kinds()?.effects().iter().cloned().collect(),
+            design: args.design()?,
+            ..PreviewInput::new(floor, layout, stage.name, session.take_snapshots(), window)
+        };
+        Ok((Self { session, switch, signals }, input))
     }
+
+    /// Ends the floor after its window, which ended so.
+    fn end(self, shown: thread::Result<Result<(), PreviewError>>) -> Result<(), Failure> {
+        let Self { session, switch, signals } = self;
+        switch.end();
+        session.stop();
+        let end = end(&session);
+        drop(signals);
+        match shown.unwrap_or_else(|reason| panic::resume_unwind(reason)) {
+            Ok(()) => match end.kind {
+                Kind::Ended(EndReason::Failed) => Err(Failure::Other(end.message().into())),
+                Kind::Ended(EndReason::Panicked) => {
+                    Err(Failure::Other("sensing failed; please report it".into()))
+                }
+                _ => Ok(()),
+            },
+            Err(PreviewError::NoWindow(reason)) => Err(Failure::NoWindow(reason)),
+        }
+    }
+}
+
+/// The moment of a visit at which the window's feet take over.
+struct AfterVisit {
+    visit: LinkedVisit,
+    at: Instant,
 }
 
 /// Stops a floor and waits until it has ended, so that no more reports come from it.
@@ -358,22 +397,30 @@ struct Stage {
     shoes: Option<ShoeFeed>,
     faults: Option<FaultSwitch>,
     people: Option<ArrivalHandle>,
+    /// Records the feet of a simulated floor, which was built so.
+    tape: Option<(FeetTape, FloorBuild)>,
 }
 
 impl Args {
-    /// The same options with the files of a link in place of the link; `None` without one.
-    fn of_link(&self) -> Result<Option<Self>, Failure> {
-        let Some(link) = self.layout.layout.as_deref().filter(|layout| share::is_link(layout)) else {
+    /// The same options with the files of a link in place of the link, and the visit of the link; `None` without a link.
+    fn of_link(&self) -> Result<Option<(Self, Option<LinkedVisit>)>, Failure> {
+        let Some(link) = self.layout.layout.as_deref().filter(|layout| is_link(layout)) else {
             return Ok(None);
         };
-        let (path, geometry) = share::unpack(&link.to_string_lossy(), &preview::usual_state())?;
-        errln!("The layout of the link is in {}.", path.display());
+        let Unpacked { layout, geometry, visit } =
+            share::unpack(&link.to_string_lossy(), &preview::usual_state())?;
+        errln!("The layout of the link is in {}.", layout.display());
         let mut args = self.clone();
-        args.layout.layout = Some(path);
-        if args.floor.floor.is_none() && args.floor.grid.is_none() {
+        args.layout.layout = Some(layout);
+        let has_floor = args.floor.floor.is_some() || args.floor.grid.is_some();
+        if !has_floor {
             args.floor.grid = geometry;
         }
-        Ok(Some(args))
+        let plays = args.real().is_none() && args.scenario.is_none() && !args.session;
+        if visit.is_some() && (has_floor || !plays) {
+            errln!("The link has a visit to another floor: its layout is shown without it.");
+        }
+        Ok(Some((args, visit.filter(|_| plays && !has_floor))))
     }
 
     /// The recording, if one is given in place of a layout.
@@ -399,7 +446,7 @@ impl Args {
         self.listen.or_else(|| self.boards.have_ports().then_some(LISTEN))
     }
 
-    fn stage(&self, floor: &Floor, layout: &Layout) -> Result<Stage, Failure> {
+    fn stage(&self, floor: &Floor, layout: &Layout, after: Option<&AfterVisit>) -> Result<Stage, Failure> {
         if let Some(address) = self.real() {
             if self.session || self.scenario.is_some() {
                 let why = "--serial shows a real floor, and a scenario plays on a simulated one";
@@ -417,6 +464,7 @@ impl Args {
                 shoes: None,
                 faults: None,
                 people: None,
+                tape: None,
             });
         }
         let mut faults = LinkFaults::default();
@@ -429,11 +477,20 @@ impl Args {
                 let (handle, driver) = feet_by_hand();
                 (Box::new(driver), "simulated floor", Some(Box::new(Mouse(handle))))
             };
+        let (driver, build, begins) = match after {
+            Some(AfterVisit { visit, at }) => {
+                let (take_over, driver) = go_on_from(Arc::clone(&visit.feet), driver);
+                take_over.at(*at);
+                (driver, visit.build, *at)
+            }
+            None => (driver, self.sim.build(), Instant::START),
+        };
         let (people, driver) = arrivals(driver);
-        let (driver, seen) = watched(Box::new(driver));
-        let (sim, floor) = self.sim.build().in_use(floor)?;
+        let (tape, driver) = taped(Box::new(driver));
+        let (driver, seen) = watched(driver);
+        let (sim, floor) = build.in_use(floor)?;
         let driver = Box::new(driver);
-        let source = SimulatedSource::new(sim, driver, Pace::RealTime);
+        let source = SimulatedSource::new(sim, driver, Pace::RealTime).hurrying_to(begins);
         let clock = source.clock();
         say_what_is_rehearsed(&faults);
         let (source, switch) = RehearsalSource::new(source, faults, FAULT_SEED);
@@ -446,6 +503,8 @@ impl Args {
             name: name.into(),
             feet,
             shoes: Some(shoes(seen)),
+            // A floor with position maps is not in a link.
+            tape: (!build.is_mapped).then_some((tape, build)),
         })
     }
 

@@ -13,6 +13,8 @@ use underfoot::engine::Snapshot;
 use underfoot::recording::RecordingSwitch;
 use underfoot::runtime::Session;
 use underfoot::serve::FloorCommand;
+use underfoot_sim::{FeetTape, FloorBuild};
+use underfoot_window::link::{SharedVisit, VisitTape};
 use underfoot_window::preview::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
 
 use super::super::export::{ExportForm, Exported, FILM_WIDTH, RecordedPart, export};
@@ -28,6 +30,8 @@ const PATIENCE: Duration = Duration::from_millis(500);
 pub(super) struct Visits {
     orders: SyncSender<VisitOrder>,
     shared: Arc<Shared>,
+    /// Records the feet beside the recording; `None` unless the floor is simulated.
+    feet: Option<VisitTape>,
 }
 
 /// State that the thread and the window share.
@@ -57,11 +61,16 @@ impl Shared {
 }
 
 impl Visits {
-    /// Records the floor of `session` by `switch`.
-    pub(super) fn of_floor(session: Session, switch: RecordingSwitch) -> Self {
+    /// Records the floor of `session` by `switch`, and its feet by `tape` if it is simulated.
+    pub(super) fn of_floor(
+        session: Session,
+        switch: RecordingSwitch,
+        tape: Option<(FeetTape, FloorBuild)>,
+    ) -> Self {
         let folder = std::env::temp_dir();
         let file = folder.join(format!("underfoot-visit-{}.mcap", std::process::id()));
-        Self::start(VisitState::default(), file, Some((session, switch)))
+        let feet = tape.map(|(tape, build)| VisitTape::new(tape, build));
+        Self { feet, ..Self::start(VisitState::default(), file, Some((session, switch))) }
     }
 
     /// Exports the recording at `path`, of this length.
@@ -82,7 +91,7 @@ impl Visits {
         let (orders, received) = sync_channel(ORDERS_WAITING);
         let clerk = Clerk { file, floor, shared: Arc::clone(&shared) };
         thread::spawn(move || clerk.work(&received));
-        Self { orders, shared }
+        Self { orders, shared, feet: None }
     }
 }
 
@@ -93,10 +102,31 @@ impl VisitDesk for Visits {
     }
 
     fn lead(&mut self, order: VisitOrder) {
+        self.lead_feet(&order);
         if matches!(order, VisitOrder::StopExport) {
             self.shared.stops_export.store(true, Ordering::Relaxed);
         } else if self.orders.try_send(order).is_err() {
             self.shared.state().told = Some("Too much is asked at once: wait for the export".into());
+        }
+    }
+
+    fn shared(&self) -> Option<Result<SharedVisit, String>> {
+        self.feet.as_ref()?.kept().map(|kept| kept.visit.clone())
+    }
+}
+
+impl Visits {
+    /// Records the feet together with the floor.
+    fn lead_feet(&mut self, order: &VisitOrder) {
+        let is_unsaved = self.shared.state().is_unsaved;
+        let Some(feet) = &mut self.feet else { return };
+        match order {
+            // The recording does not begin either.
+            VisitOrder::Begin(_) if is_unsaved => {}
+            VisitOrder::Begin(_) => feet.begin(),
+            VisitOrder::End => feet.end(),
+            VisitOrder::Discard => feet.discard(),
+            _ => {}
         }
     }
 }

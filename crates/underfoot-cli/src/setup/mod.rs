@@ -4,26 +4,33 @@ mod ask;
 mod boards;
 mod shape;
 mod steps;
+#[cfg(feature = "preview")]
+mod window;
 
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use underfoot::floor::{PortName, read_address};
+use underfoot::floor::{Geometry, PortName, read_address};
+use underfoot::schema::load_layout_and_kinds;
+use underfoot_window::setup::{HeardBoards, first_layout};
 
 use super::failure::Failure;
 use super::floor_args::{load_floor, save_floor};
 use super::number::patience;
 use ask::{Left, ask, choice, number};
-use boards::HeardBoards;
 use steps::FloorCommands;
 
 /// Options of `underfoot setup`.
 ///
-/// Asks questions and runs the commands for each step; every step can be repeated, left out and run alone. An existing
-/// floor file is kept as a backup.
-#[derive(clap::Args, Debug)]
+/// Asks questions and runs the commands for each step; every step can be repeated, left out and run alone. With --window,
+/// a window guides instead. An existing floor file is kept as a backup.
+#[derive(clap::Args, Clone, Debug)]
 pub(crate) struct Args {
+    /// Guide in a window, with the floor drawn and the tile to step on lit, instead of by questions.
+    #[cfg(feature = "preview")]
+    #[arg(long)]
+    window: bool,
     /// Floor file to write and to go on with.
     #[arg(long, value_name = "FILE", default_value = "floor.ron")]
     floor: PathBuf,
@@ -55,6 +62,10 @@ const STEPS: [&str; 8] = [
 
 /// Guides through the steps.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    #[cfg(feature = "preview")]
+    if args.window {
+        return window::run(args);
+    }
     let steps = FloorCommands::new(args.listen.to_string())?;
     outln!("Set-up of the floor in {}. Ctrl-C ends a step; Ctrl-D leaves.", args.floor.display());
     let mut found = HeardBoards::default();
@@ -101,8 +112,8 @@ fn take(
                     return Ok(Ok(false));
                 }
             }
-            boards::describe(&found.survey, args.listen);
-            Ok(!found.survey.boards().is_empty())
+            boards::describe(found, args.listen);
+            Ok(!found.boards().is_empty())
         }
         1 => match shape::ask_floor(found) {
             Ok(made) => {
@@ -130,10 +141,7 @@ fn take(
 
 /// Opens a layout in the window, or serves it where there is no display.
 fn open(args: &Args, steps: &FloorCommands) -> Result<bool, Failure> {
-    let layout = match &args.layout {
-        Some(layout) => layout.clone(),
-        None => first_layout(&args.floor)?,
-    };
+    let layout = layout_to_open(args)?;
     let layout = layout.to_string_lossy();
     #[cfg(feature = "preview")]
     if super::preview::has_display() {
@@ -142,13 +150,25 @@ fn open(args: &Args, steps: &FloorCommands) -> Result<bool, Failure> {
     Ok(steps.run(&["run", &layout], &args.floor, &["--json"]))
 }
 
-/// Writes the first layout beside the floor file, unless there is one.
-fn first_layout(floor: &Path) -> Result<PathBuf, Failure> {
-    let path = floor.with_file_name("first_layout.ron");
-    if !path.exists() {
-        let text = shape::first_layout(&load_floor(floor, &|_| None)?.geometry);
-        std::fs::write(&path, text).map_err(|error| Failure::File(path.clone(), error))?;
+/// The layout to open: the chosen one, or the first layout beside the floor file, which is written unless it is there.
+fn layout_to_open(args: &Args) -> Result<PathBuf, Failure> {
+    if let Some(layout) = &args.layout {
+        return Ok(layout.clone());
+    }
+    let geometry = load_floor(&args.floor, &|_| None)?.geometry;
+    let usual = args.floor.with_file_name("first_layout.ron");
+    // One of another shape stays as it is.
+    let of_shape = format!("first_layout_{}x{}.ron", geometry.columns(), geometry.rows());
+    let path =
+        if is_for_another_floor(&usual, &geometry) { args.floor.with_file_name(of_shape) } else { usual };
+    if !path.exists() || is_for_another_floor(&path, &geometry) {
+        std::fs::write(&path, first_layout(&geometry)).map_err(|error| Failure::File(path.clone(), error))?;
         outln!("Written: {}, a button on each tile.", path.display());
     }
     Ok(path)
+}
+
+/// Whether there is a layout that does not fit this floor.
+fn is_for_another_floor(path: &Path, geometry: &Geometry) -> bool {
+    path.exists() && load_layout_and_kinds(path, geometry).is_err()
 }

@@ -3,17 +3,19 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::io::{BufRead, BufReader, Write};
+use std::io::Write;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::xvfb::Xvfb;
+
 /// Time-out of a wait: normally a second or two; a busy machine gets a hundred times that.
 const LONGEST: Duration = Duration::from_secs(180);
 const PAUSE: Duration = Duration::from_millis(100);
 
-const PROGRAMS: [&str; 4] = ["Xvfb", "openbox", "xdotool", "xclip"];
+const PROGRAMS: [&str; 3] = ["openbox", "xdotool", "xclip"];
 
 const LAYOUT: &str = "Layout(version: 1, regions: [(id: \"r\", at: (0, 2), size: (6, 4))], widgets: [
     (id: \"first\", kind: \"button\", at: (0.2, 2.2), size: (0.6, 0.6), label: \"A\"),
@@ -33,10 +35,9 @@ impl Drop for Ended {
 /// A display with a window manager, and a window of `underfoot preview mine.ron` on it.
 struct Desk {
     folder: tempfile::TempDir,
-    display: String,
     window: Ended,
     _manager: Ended,
-    _server: Ended,
+    server: Xvfb,
 }
 
 /// Whether all programs that these tests need are installed.
@@ -72,19 +73,13 @@ impl Desk {
         }
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("mine.ron"), LAYOUT).unwrap();
-        let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut number = String::new();
-        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
-        let display = format!(":{}", number.trim());
-        let server = Ended(server);
+        let server = Xvfb::open("1280x800x24")?;
         let on = |program: &OsStr| {
             let mut command = Command::new(program);
-            command.env("DISPLAY", &display).env_remove("WAYLAND_DISPLAY").env("LIBGL_ALWAYS_SOFTWARE", "1");
+            command
+                .env("DISPLAY", &server.display)
+                .env_remove("WAYLAND_DISPLAY")
+                .env("LIBGL_ALWAYS_SOFTWARE", "1");
             command.env("XDG_STATE_HOME", folder.path().join("state"));
             command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
             command.current_dir(folder.path());
@@ -93,7 +88,7 @@ impl Desk {
         let manager = Ended(on("openbox".as_ref()).spawn().unwrap());
         let program = env!("CARGO_BIN_EXE_underfoot");
         let window = on(program.as_ref()).args(["preview", "mine.ron", "--no-osc"]).spawn().unwrap();
-        let desk = Self { window: Ended(window), _manager: manager, _server: server, display, folder };
+        let desk = Self { window: Ended(window), _manager: manager, server, folder };
         // The title names the file once the first frame is drawn.
         let id = until("window", || desk.x(&["search", "--onlyvisible", "--name", "^mine.ron - underfoot$"]));
         let id = id.lines().last().unwrap().to_owned();
@@ -107,7 +102,7 @@ impl Desk {
     }
 
     fn run(&self, program: &str, arguments: &[&str]) -> Output {
-        Command::new(program).args(arguments).env("DISPLAY", &self.display).output().unwrap()
+        Command::new(program).args(arguments).env("DISPLAY", &self.server.display).output().unwrap()
     }
 
     /// A command of xdotool; `None` if it failed.
@@ -140,7 +135,7 @@ impl Desk {
     fn copy_elsewhere(&self, text: &str) -> Ended {
         let mut other = Command::new("xclip")
             .args(["-selection", "clipboard", "-in", "-quiet"])
-            .env("DISPLAY", &self.display)
+            .env("DISPLAY", &self.server.display)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::null())

@@ -9,6 +9,8 @@ mod ports;
 mod sender;
 #[path = "../../../../tests/support/units.rs"]
 mod units;
+#[path = "../../../../tests/support/xvfb.rs"]
+mod xvfb;
 
 mod app;
 mod areas;
@@ -28,6 +30,7 @@ mod input;
 mod letters;
 #[cfg(unix)]
 mod lights;
+mod linked;
 #[cfg(target_os = "linux")]
 mod midi;
 mod mirror;

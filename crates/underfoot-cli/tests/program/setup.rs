@@ -61,6 +61,18 @@ fn nothing_is_asked_of_a_floor_that_is_not_there() {
     assert!(!folder.path().join("floor.ron").exists());
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_display_the_window_points_to_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut program = underfoot();
+    program.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").current_dir(folder.path());
+    let output = program.args(["setup", "--window"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && said.contains("leave out --window"), "{said}");
+    assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none(), "nothing is written");
+}
+
 #[cfg(unix)]
 #[test]
 fn a_board_that_sends_lines_of_text_is_found_with_its_columns_and_the_file_reads_it() {

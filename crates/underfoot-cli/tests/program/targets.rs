@@ -1,9 +1,8 @@
 //! A key that goes down comes up after any failure: messages of a held control, seen by an observer outside of the program.
 
-use std::io::{BufRead, BufReader};
 use std::net::UdpSocket;
 use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use rosc::{OscPacket, OscType, decoder};
@@ -13,6 +12,7 @@ use x11rb::rust_connection::RustConnection;
 
 use crate::holds::client::Client;
 use crate::holds::site::{BoardFault, Boards, Run, Site};
+use crate::xvfb::Xvfb;
 
 /// Longest time for which anything may stay down.
 pub const SOON: Duration = Duration::from_millis(150);
@@ -86,8 +86,7 @@ impl Observer for OscDesk {
 
 /// A virtual X display, and the state of its space bar.
 struct VirtualScreen {
-    server: Child,
-    display: String,
+    server: Xvfb,
     connection: RustConnection,
     code: u8,
 }
@@ -95,33 +94,19 @@ struct VirtualScreen {
 impl VirtualScreen {
     /// A display of its own; `None`, with the reason printed, if there is no Xvfb.
     fn open() -> Option<Self> {
-        let spawned = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "640x480x24", "-nolisten", "tcp"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn();
-        let mut server = match spawned {
-            Ok(server) => server,
-            Err(error) => {
-                println!("not run: there is no Xvfb (Debian: xvfb): {error}");
-                return None;
-            }
-        };
-        let mut line = String::new();
-        BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let display = format!(":{}", line.trim());
-        let (connection, _) = RustConnection::connect(Some(&display)).unwrap();
+        let server = Xvfb::open("640x480x24")?;
+        let (connection, _) = RustConnection::connect(Some(&server.display)).unwrap();
         let setup = connection.setup();
         let (first, last) = (setup.min_keycode, setup.max_keycode);
         let mapping = connection.get_keyboard_mapping(first, last - first + 1).unwrap().reply().unwrap();
         let per_key = usize::from(mapping.keysyms_per_keycode);
         let at = mapping.keysyms.chunks(per_key).position(|keysyms| keysyms[0] == 0x20).unwrap();
         let code = first + u8::try_from(at).unwrap();
-        Some(Self { server, display, connection, code })
+        Some(Self { server, connection, code })
     }
 
     fn target(&self) -> String {
-        format!("(name: \"viewer\", to: Keyboard((display: \"{}\")))", self.display)
+        format!("(name: \"viewer\", to: Keyboard((display: \"{}\")))", self.server.display)
     }
 }
 
@@ -129,13 +114,6 @@ impl Observer for VirtualScreen {
     fn is_down(&mut self) -> bool {
         let keys = self.connection.query_keymap().unwrap().reply().unwrap().keys;
         keys[usize::from(self.code / 8)] & (1 << (self.code % 8)) != 0
-    }
-}
-
-impl Drop for VirtualScreen {
-    fn drop(&mut self) {
-        let _ = self.server.kill();
-        let _ = self.server.wait();
     }
 }
 

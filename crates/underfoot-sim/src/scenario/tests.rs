@@ -116,6 +116,20 @@ fn somebody_crosses_the_floor() {
 }
 
 #[test]
+fn a_person_stands_with_the_feet_as_far_apart_as_written() {
+    for apart_m in [0.1, 0.3] {
+        let text = format!(
+            "Scenario(title: \"Test\", person: (stand_m: {apart_m}), steps: [Stand(at: (3.0, 3.0)), Wait(ms: 100)])"
+        );
+        let scenario = Scenario::parse("test.ron", &text).unwrap();
+        let frames = play(&mut scenario.resolve(&layout(), &Geometry::default()).unwrap());
+        let [left, right] = &frames[0][..] else { panic!("{frames:?}") };
+        let found_m = left.position.distance(right.position);
+        assert!((found_m - apart_m).abs() < 0.04, "{found_m}");
+    }
+}
+
+#[test]
 fn presses_and_drags_meet_their_controls() {
     let layout = layout();
     let scenario = parse(

@@ -1,4 +1,5 @@
-//! A layout in a link: the text of the layout, with its own kinds and effects, behind the `#` of an address.
+//! A layout in a link: the text of the layout, with its own kinds and effects, behind the `#` of an address; and a visit
+//! to it.
 //!
 //! ```text
 //! SharedLayout -JSON-> bytes -zlib-> bytes -base64url-> #1.eNqrVkrOz0tVslIqSExPLVayUkpJTcvMS1WyMlSqBQCGAAhr
@@ -6,8 +7,10 @@
 //!
 //! The part behind `#` stays in the browser: no server gets it. The number in front is the version of this form.
 
+mod tape;
 #[cfg(test)]
 mod tests;
+mod visit;
 
 use std::collections::BTreeMap;
 use std::io::{Read, Write};
@@ -22,15 +25,19 @@ use thiserror::Error;
 use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
 use underfoot::schema::{Diagnostics, Effects, Kinds, parse_layout};
+use underfoot_sim::BadFeet;
+
+pub use tape::{KeptVisit, VisitTape};
+pub use visit::{MAX_VISIT, SharedVisit};
 
 /// Maximum length of all texts of a link together, in bytes.
 pub const MAX_TEXT: usize = 32 * 1024;
 
 /// Maximum length of the JSON: most characters of a text take one byte there, line ends and quotes two, and control
-/// characters six.
-const MAX_JSON: u64 = 6 * MAX_TEXT as u64 + 4096;
+/// characters six. The letters of a visit take one byte.
+const MAX_JSON: u64 = 6 * MAX_TEXT as u64 + MAX_VISIT as u64 + 4096;
 
-/// Maximum length of the part behind `#`: texts that do not compress at all.
+/// Maximum length of the part behind `#`: texts that do not compress at all, and a visit.
 const MAX_LINK: usize = 2 * MAX_JSON as usize;
 
 /// The version of the form.
@@ -52,6 +59,9 @@ pub struct SharedLayout {
     /// The texts of its own effects, by the names of their files.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub effects: BTreeMap<String, String>,
+    /// A visit to the layout. Programs from before visits show the layout alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visit: Option<SharedVisit>,
 }
 
 /// The reason why a layout and a link do not go together.
@@ -72,6 +82,18 @@ pub enum LinkError {
     /// Letters of the link are missing or wrong.
     #[error("the link is damaged: it may have been cut where it was sent; ask for it again, or for the file")]
     Damaged,
+    /// The visit has more than a link holds.
+    #[error("the visit takes {} kB, and a link holds {} kB of it: record a shorter one", letters.div_ceil(1024), MAX_VISIT / 1024)]
+    LongVisit {
+        /// The length of the visit in the link.
+        letters: usize,
+    },
+    /// The feet of the visit cannot be read.
+    #[error("the visit in the link cannot be played: {0}")]
+    Feet(#[from] BadFeet),
+    /// The visit is on a floor that this program cannot simulate.
+    #[error("the visit in the link is on a floor of the quality {0:?}, which this underfoot does not know")]
+    Quality(String),
 }
 
 impl SharedLayout {
@@ -131,12 +153,14 @@ impl SharedLayout {
     /// The part of a link behind the address of the page: `#` and the layout.
     ///
     /// # Errors
-    /// [`LinkError::TooLong`] if the texts have more than [`MAX_TEXT`] bytes.
+    /// [`LinkError::TooLong`] if the texts have more than [`MAX_TEXT`] bytes, [`LinkError::LongVisit`] for a visit of
+    /// more than [`MAX_VISIT`] letters.
     pub fn fragment(&self) -> Result<String, LinkError> {
         let bytes = self.len();
         if bytes > MAX_TEXT {
             return Err(LinkError::TooLong { bytes });
         }
+        self.visit.as_ref().map_or(Ok(()), SharedVisit::check_length)?;
         let json = serde_json::to_vec(self).map_err(|_| LinkError::TooLong { bytes })?;
         let mut packer = ZlibEncoder::new(Vec::new(), Compression::best());
         let packed = packer.write_all(&json).and_then(|()| packer.finish());
@@ -170,6 +194,13 @@ impl SharedLayout {
             return Err(LinkError::Damaged);
         }
         let shared: Self = serde_json::from_slice(&json).map_err(|_| LinkError::Damaged)?;
-        if shared.len() > MAX_TEXT { Err(LinkError::Damaged) } else { Ok(shared) }
+        if shared.len() > MAX_TEXT {
+            return Err(LinkError::Damaged);
+        }
+        if let Some(visit) = &shared.visit {
+            visit.feet()?;
+            visit.quality()?;
+        }
+        Ok(shared)
     }
 }

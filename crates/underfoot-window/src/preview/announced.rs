@@ -17,7 +17,7 @@ struct AnnouncingReplay {
     late: Option<LayoutNews>,
 }
 
-/// The input of a recording or of a server's floor, with later layouts reported to the window.
+/// Returns the input of a recording or of a server's floor, with later layouts reported to the window.
 #[must_use]
 pub fn announced(
     input: impl Into<FloorInput>,

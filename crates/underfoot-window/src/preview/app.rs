@@ -5,12 +5,14 @@ use eframe::egui::{self, Ui};
 use super::PreviewOptions;
 use super::appearance::Appearance;
 use super::bars::{HelpTopic, MessageStack, TELL_S, TopBar, handle_mute_key, help_bar};
+use super::channels::NextFloor;
 use super::closing::{Closing, Title, handle_quit_key};
 use super::design::Designer;
 use super::feed::PreviewInput;
 use super::floor_check::FloorCheck;
 use super::floor_view::{FloorFeet, FloorPane, OnFloor};
 use super::focus::FocusRing;
+use super::lookout;
 use super::messages::{Happened, WindowMessages};
 use super::mode::WindowMode;
 use super::pace::{FramePace, WindowMotion};
@@ -27,7 +29,7 @@ use super::stage::{PanelWidths, StageOfWindow};
 use super::status::StatusBar;
 use super::time_line::TimeLine;
 use super::turns::Turns;
-use super::visit::VisitBar;
+use super::visit::{VisitAction, VisitBar};
 use super::walks::Walks;
 use super::watch::LinkNotices;
 use underfoot_scene::scene::{self, Theme};
@@ -74,6 +76,9 @@ pub(super) struct WindowState {
     widths: PanelWidths,
     /// Whether the last frame showed Design mode.
     was_designing: bool,
+    /// The options with which the window began.
+    options: PreviewOptions,
+    next_floor: Option<NextFloor>,
 }
 
 impl App {
@@ -113,6 +118,8 @@ impl App {
                 focus: FocusRing::default(),
                 widths: PanelWidths::default(),
                 was_designing: false,
+                options: options.clone(),
+                next_floor: channels.next_floor,
             },
             shown: ShownFloor {
                 scopes: ActuatorScopes::new(input.scopes, &floor),
@@ -157,8 +164,27 @@ impl App {
         self.floor_check.as_ref().is_some_and(FloorCheck::is_running)
     }
 
+    /// Shows another floor in the place of this one, once there is one: the user has taken over from a visit, or opened
+    /// a recording.
+    fn go_on(&mut self, ctx: &egui::Context) {
+        let taken = self.time_line.as_mut().and_then(TimeLine::taken_over);
+        let next = taken.or_else(|| self.window.next_floor.as_ref()?.take());
+        let Some(input) = next else { return };
+        if let Some(designer) = &mut self.designer {
+            designer.keep_now();
+        }
+        let options = PreviewOptions { begins_with_gallery: false, ..self.window.options.clone() };
+        let mut next = Self::new(lookout::start(*input, ctx), &options);
+        // The window looks as it did.
+        std::mem::swap(&mut next.appearance, &mut self.appearance);
+        next.view.zoom = self.view.zoom;
+        *self = next;
+        ctx.request_repaint();
+    }
+
     /// Draws one frame.
     pub(super) fn show(&mut self, ui: &mut Ui) {
+        self.go_on(ui.ctx());
         self.receive(ui);
         self.handle_keys(ui);
         self.follow_steps(ui);
@@ -236,9 +262,7 @@ impl App {
         if let Some(tuner) = &mut self.tuner {
             tuner.panel(ui, &theme, &self.shown, self.selection.tile(), stage);
         }
-        if let Some(visit) = &mut self.visit {
-            visit.show(ui, &theme, self.time_line.as_ref().and_then(TimeLine::part));
-        }
+        self.show_visit_bar(ui, &theme);
         self.plots.show(ui, &theme, &self.shown, &self.selection, self.designer.as_mut());
         let (frame, has_steps) = (egui::Frame::new(), self.has_steps());
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
@@ -287,7 +311,8 @@ impl App {
         self.appearance.enlarge(ui.ctx());
         handle_quit_key(ui);
         if let Some(visit) = &mut self.visit {
-            visit.follow(ui, self.shown.snapshot());
+            let designer = self.designer.as_ref();
+            visit.follow(ui, self.shown.snapshot(), &|| designer.map(Designer::to_share));
         }
         // In Design mode, `Designer::keys_anywhere` saves, after the text fields.
         if let Some(designer) = self.designer.as_mut().filter(|designer| !designer.is_open) {
@@ -339,7 +364,20 @@ impl App {
     pub(super) fn show_visit_button(&mut self, ui: &mut Ui, is_compact: bool) {
         let theme = self.appearance.theme();
         if let Some(visit) = &mut self.visit {
-            visit.button(ui, &theme, self.shown.snapshot(), is_compact);
+            let designer = self.designer.as_ref();
+            let layout = || designer.map(Designer::to_share);
+            visit.button(ui, &theme, self.shown.snapshot(), &layout, is_compact);
+        }
+    }
+
+    /// Shows the bar for the last recording, and gives it away as a link.
+    fn show_visit_bar(&mut self, ui: &mut Ui, theme: &Theme) {
+        let part = self.time_line.as_ref().and_then(TimeLine::part);
+        let action = self.visit.as_mut().and_then(|visit| visit.show(ui, theme, part, self.share.is_some()));
+        match (action, &mut self.share) {
+            (Some(VisitAction::Share(layout)), Some(share)) => share.open(&layout),
+            (Some(VisitAction::Play(layout)), Some(share)) => share.play(ui.ctx(), &layout),
+            _ => {}
         }
     }
 

@@ -39,7 +39,7 @@ struct Choice {
 }
 
 /// The appearance of the window and the projection.
-pub(super) struct Appearance {
+pub(crate) struct Appearance {
     choice: Choice,
     /// The file that stores the choice; `None` to store nothing.
     file: Option<PathBuf>,
@@ -52,7 +52,7 @@ pub(super) struct Appearance {
 impl Appearance {
     /// Uses the colours of `theme` for the window unless `file` holds others; also returns a message for the user if
     /// the file cannot be used.
-    pub(super) fn new(theme: Theme, file: Option<PathBuf>) -> (Self, Option<String>) {
+    pub(crate) fn new(theme: Theme, file: Option<PathBuf>) -> (Self, Option<String>) {
         let usual = Choice { window: theme, projected: Theme::DARK, text: USUAL, has_steps: true };
         let read = file.as_deref().map_or(Ok(None), |file| match platform::read(file, LONGEST) {
             Ok(text) => usual.read(&text).map(Some).map_err(str::to_owned),
@@ -77,7 +77,7 @@ impl Appearance {
         self.choose(ctx, Choice { has_steps, ..self.choice }, messages);
     }
 
-    pub(super) fn theme(&self) -> Theme {
+    pub(crate) fn theme(&self) -> Theme {
         self.choice.window
     }
 
@@ -88,7 +88,7 @@ impl Appearance {
 
     /// Enlarges letters and panels in large windows, because people see those from farther away. The user's text size
     /// multiplies the result.
-    pub(super) fn enlarge(&mut self, ctx: &egui::Context) {
+    pub(crate) fn enlarge(&mut self, ctx: &egui::Context) {
         let points = ctx.content_rect().size() * ctx.zoom_factor();
         let wanted = (0.85 * (points.x / 1280.0).min(points.y / 800.0)).clamp(1.0, 2.0);
         // Round to tenths: otherwise each pixel of a resize would lay out the text again.

@@ -1,12 +1,24 @@
 //! The window in a page of a browser.
 
+use eframe::egui_glow::Painter;
 use js_sys::{Object, Reflect};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::closure::Closure;
 use web_sys::HtmlCanvasElement;
 
-use super::damage::Damage;
+use super::damage::{Canvas, CanvasState, Damage};
 use super::{PreviewError, PreviewInput, PreviewOptions};
+
+/// The canvas of the page, which keeps its picture by itself ([`keep_picture`]).
+struct PageCanvas;
+
+impl Canvas for PageCanvas {
+    fn begin(&self, _: &Painter, _: [u32; 2]) -> CanvasState {
+        CanvasState::Kept
+    }
+
+    fn end(&self, _: &Painter, _: [u32; 2]) {}
+}
 
 /// Shows the window in `canvas` from now on, until the page is left. Letters that the program's own fonts lack are
 /// drawn by the browser.
@@ -25,7 +37,7 @@ pub async fn run(
     let start: eframe::AppCreator<'static> = Box::new(move |context| {
         let app = super::app(input, &options, context);
         if keeps_picture {
-            context.egui_ctx.add_plugin(Damage::default());
+            context.egui_ctx.add_plugin(Damage::new(PageCanvas));
         }
         Ok(app)
     });

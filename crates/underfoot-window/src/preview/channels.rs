@@ -1,8 +1,10 @@
 //! Channels between the window and the program that provides its floor.
 
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
-use super::feed::{EventNews, LayoutNews, PreviewCommand};
+use super::feed::{EventNews, LayoutNews, PreviewCommand, PreviewInput};
 
 /// Capacity for events; the window takes them 60 times a second.
 const EVENTS_WAITING: usize = 4096;
@@ -35,7 +37,6 @@ impl From<&str> for Notice {
 }
 
 /// The window's ends.
-#[derive(Debug)]
 pub struct WindowChannels {
     /// Every event, in order.
     pub events: Receiver<EventNews>,
@@ -45,7 +46,12 @@ pub struct WindowChannels {
     pub notices: Receiver<Notice>,
     /// The commands of the user; at most 256 wait.
     pub commands: SyncSender<PreviewCommand>,
+    /// The floor that takes the place of this one, once there is one; `None` where none does.
+    pub next_floor: Option<NextFloor>,
 }
+
+/// The floor that a window shows next; the window on display takes it in its next frame.
+pub type NextFloor = Rc<RefCell<Option<Box<PreviewInput>>>>;
 
 /// The program's ends. Sending to a closed window is not a fault.
 #[derive(Debug)]
@@ -73,5 +79,5 @@ pub fn channels() -> (WindowChannels, ProgramChannels) {
         notices: notice_sender,
         commands: asked,
     };
-    (WindowChannels { events, layouts, notices, commands }, program)
+    (WindowChannels { events, layouts, notices, commands, next_floor: None }, program)
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use eframe::egui;
 
+use super::damage::{Damage, Framebuffer, has_graphics_card};
 use super::{PreviewError, PreviewInput, PreviewOptions};
 use underfoot_scene::letters::Installed;
 
@@ -12,10 +13,23 @@ use underfoot_scene::letters::Installed;
 /// # Errors
 /// [`PreviewError::NoWindow`] if there is no display or no OpenGL on it.
 pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewError> {
+    let copied = options.clone();
+    open(&options.title, options.size, move |context| super::app(input, &copied, context))
+}
+
+/// Opens a window with the contents that `app` makes, and shows it until the user closes it.
+///
+/// # Errors
+/// [`PreviewError::NoWindow`] if there is no display or no OpenGL on it.
+pub(crate) fn open(
+    title: &str,
+    size: (f32, f32),
+    app: impl FnOnce(&eframe::CreationContext<'_>) -> Box<dyn eframe::App> + 'static,
+) -> Result<(), PreviewError> {
     let viewport = egui::ViewportBuilder::default()
-        .with_title(&options.title)
+        .with_title(title)
         .with_app_id("underfoot")
-        .with_inner_size([options.size.0, options.size.1])
+        .with_inner_size([size.0, size.1])
         .with_min_inner_size([640.0, 420.0]);
     // There are no gradients that need dithering, and without a graphics card it takes a tenth of each frame.
     let native = eframe::NativeOptions {
@@ -27,14 +41,16 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         ..Default::default()
     };
     keep_memory();
-    let (title, options) = (options.title.clone(), options.clone());
     let start = Box::new(move |context: &eframe::CreationContext<'_>| {
-        let app = super::app(input, &options, context);
+        let app = app(context);
         // Missing letters come from the fonts of this computer, as in pictures.
         context.egui_ctx.add_font_provider(Arc::new(Installed::new()));
+        if context.gl.as_ref().is_some_and(|gl| !has_graphics_card(gl)) {
+            context.egui_ctx.add_plugin(Damage::new(Framebuffer::default()));
+        }
         Ok(app)
     });
-    eframe::run_native(&title, native, start)
+    eframe::run_native(title, native, start)
         .map_err(|error| PreviewError::NoWindow(reason(&error.to_string()).to_owned()))
 }
 

@@ -6,6 +6,7 @@ use eframe::egui::{
     self, Button, FontId, Key, Modal, Rect, RichText, ScrollArea, Sense, StrokeKind, Ui, WidgetInfo, vec2,
 };
 
+use super::icons::Icon;
 use super::style::{panel_colour, quiet, selected_ground};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Geometry;
@@ -76,7 +77,8 @@ impl LayoutGallery {
 
     /// A button with the name of the present layout, which opens the gallery.
     pub(super) fn button(&mut self, ui: &mut Ui, title: &str, width: f32) {
-        let button = Button::new(title).right_text("⏷").truncate().min_size(vec2(width, 0.0));
+        let arrow = Icon::ChevronDown.unicode().to_string();
+        let button = Button::new(title).right_text(arrow).truncate().min_size(vec2(width, 0.0));
         let button = ui.add_sized(vec2(width, ui.spacing().interact_size.y), button);
         button.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Layout"));
         if button.on_hover_text("Open another layout").clicked() {
@@ -210,7 +212,7 @@ impl LayoutCard {
         grid: &CardGrid,
         name: &str,
     ) -> egui::Response {
-        let sense = if self.fits { Sense::CLICK } else { Sense::hover() };
+        let sense = if self.fits { Sense::click() } else { Sense::hover() };
         let (rect, response) = ui.allocate_exact_size(grid.card, sense);
         response.widget_info(|| {
             let mut info = WidgetInfo::labeled(Role::Button, self.fits, name);

@@ -5,21 +5,16 @@
 
 mod announced;
 mod app;
-mod appearance;
+pub(crate) mod appearance;
 mod bars;
 #[cfg(target_arch = "wasm32")]
 mod browser;
 mod channels;
 mod closing;
-#[cfg(any(test, target_arch = "wasm32"))]
-#[cfg_attr(
-    not(target_arch = "wasm32"),
-    allow(dead_code, reason = "a desktop clears its window before each frame")
-)]
 mod damage;
 mod design;
 #[cfg(not(target_arch = "wasm32"))]
-mod desktop;
+pub(crate) mod desktop;
 #[cfg(test)]
 mod drags;
 mod feed;
@@ -53,14 +48,14 @@ mod rehearsal;
 #[path = "../../../../tests/support/sample.rs"]
 mod sample;
 mod scopes;
-mod screen_report;
+pub(crate) mod screen_report;
 mod selection;
 mod served;
 mod share;
 mod shown;
 mod stage;
 mod status;
-mod style;
+pub(crate) mod style;
 #[cfg(test)]
 mod tests;
 mod time_line;
@@ -76,7 +71,7 @@ mod zoom;
 pub use announced::announced;
 #[cfg(target_arch = "wasm32")]
 pub use browser::run;
-pub use channels::{Notice, ProgramChannels, WindowChannels, channels};
+pub use channels::{NextFloor, Notice, ProgramChannels, WindowChannels, channels};
 pub use design::{DesignInput, KindsOf, texts_beside, usual_state};
 #[cfg(not(target_arch = "wasm32"))]
 pub use desktop::run;

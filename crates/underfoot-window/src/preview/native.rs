@@ -20,12 +20,7 @@ fn screens(_: &eframe::Frame) -> Option<ConnectedScreens> {
     None
 }
 
-/// Does nothing: a desktop clears the window before each frame.
-#[cfg(not(target_arch = "wasm32"))]
-fn draw_ground(_: &Ui, _: egui::Color32) {}
-
-/// Fills the window behind everything: the canvas of a browser keeps its picture between frames.
-#[cfg(target_arch = "wasm32")]
+/// Fills the window behind everything: canvases keep their picture between frames.
 fn draw_ground(ui: &Ui, colour: egui::Color32) {
     let ctx = ui.ctx();
     ctx.layer_painter(egui::LayerId::background()).rect_filled(ctx.viewport_rect(), 0.0, colour);

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::feed::PreviewInput;
+
 /// A recording that plays through the sensing. Times are seconds since its first moment.
 pub trait Playback {
     /// The present state.
@@ -9,6 +11,12 @@ pub trait Playback {
 
     /// Sends a command; a time before the first moment or after the last is clamped, NaN counts as the first.
     fn lead(&mut self, order: PlaybackOrder);
+
+    /// Ends playback at the present moment and returns the floor that goes on from there under the window's own feet;
+    /// `None` where that is impossible.
+    fn take_over(&mut self) -> Option<PreviewInput> {
+        None
+    }
 }
 
 /// The state of playback.
@@ -30,6 +38,8 @@ pub struct PlaybackState {
     pub marks: Arc<Vec<PlaybackMark>>,
     /// Why the recording breaks off, if it does.
     pub broken: Option<String>,
+    /// Whether [`Playback::take_over`] is possible.
+    pub can_take_over: bool,
 }
 
 impl Default for PlaybackState {
@@ -43,6 +53,7 @@ impl Default for PlaybackState {
             repeats: None,
             marks: Arc::default(),
             broken: None,
+            can_take_over: false,
         }
     }
 }

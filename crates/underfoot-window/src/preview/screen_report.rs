@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use crate::platform;
 
 /// Begins the reports if the user asks for them.
-pub(super) fn report_screen(ctx: &egui::Context) {
+pub(crate) fn report_screen(ctx: &egui::Context) {
     if let Some(place) = platform::report_place() {
         ctx.add_plugin(ScreenReport::into_place(place));
     }

@@ -8,6 +8,7 @@ use qrcodegen::{Mask, QrCode, QrCodeEcc, QrSegment, Version};
 
 use super::icons::{Icon, named, short};
 use super::style::quiet;
+use crate::link::SharedVisit;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
 
@@ -18,6 +19,11 @@ pub trait ShareDesk {
     /// # Errors
     /// A sentence that says why there is no link, for example because the text is too long.
     fn link(&self, layout: &LayoutToShare) -> Result<String, String>;
+
+    /// Whether the links begin with the address of a page that opens them, and layouts are shared by themselves.
+    fn has_page(&self) -> bool {
+        true
+    }
 }
 
 /// The layout of Design mode, for a link.
@@ -29,6 +35,8 @@ pub struct LayoutToShare {
     pub text: String,
     /// Its file; `None` for a layout without a file.
     pub path: Option<PathBuf>,
+    /// A visit to it; `None` for the layout alone.
+    pub visit: Option<SharedVisit>,
 }
 
 /// Side of a QR code with its quiet zone, in points.
@@ -53,10 +61,14 @@ struct GivenLink {
     /// `None` for a link that is too long for a code.
     code: Option<QrCode>,
     is_copied: bool,
+    /// Whether a visit is in it.
+    has_visit: bool,
+    /// Whether it begins with the address of a page.
+    has_page: bool,
 }
 
 impl GivenLink {
-    fn new(link: Result<String, String>) -> Self {
+    fn new(link: Result<String, String>, has_visit: bool, has_page: bool) -> Self {
         let code = link.as_ref().ok().and_then(|link| {
             let segments = QrSegment::make_segments(link);
             let (least, mask) = (Version::MIN, None::<Mask>);
@@ -70,7 +82,7 @@ impl GivenLink {
             )
             .ok()
         });
-        Self { link, code, is_copied: false }
+        Self { link, code, is_copied: false, has_visit, has_page }
     }
 }
 
@@ -81,9 +93,26 @@ impl Share {
 
     /// Shows the button; a click opens the dialogue with the layout that `layout` returns.
     pub(super) fn button(&mut self, ui: &mut Ui, is_compact: bool, layout: impl FnOnce() -> LayoutToShare) {
+        if !self.desk.has_page() {
+            return;
+        }
         let button = named(ui.button(short(Icon::Share2, "Share", is_compact)), "Share");
         if button.on_hover_text("A link that opens this layout in any browser").clicked() {
-            self.given = Some(GivenLink::new(self.desk.link(&layout())));
+            self.open(&layout());
+        }
+    }
+
+    /// Opens the dialogue with the link of `layout`.
+    pub(super) fn open(&mut self, layout: &LayoutToShare) {
+        let (has_visit, has_page) = (layout.visit.is_some(), self.desk.has_page());
+        self.given = Some(GivenLink::new(self.desk.link(layout), has_visit, has_page));
+    }
+
+    /// Opens the page of the link of `layout` in a window of its own, or the dialogue if there is no such link.
+    pub(super) fn play(&mut self, ctx: &egui::Context, layout: &LayoutToShare) {
+        match self.desk.link(layout) {
+            Ok(link) => ctx.open_url(egui::OpenUrl::new_tab(link)),
+            Err(_) => self.open(layout),
         }
     }
 
@@ -95,7 +124,8 @@ impl Share {
         let mut is_done = false;
         let modal = Modal::new(egui::Id::unique("share")).frame(frame).show(ctx, |ui| {
             ui.set_width(CODE + 60.0);
-            ui.label(RichText::new("Share this layout").size(16.0).strong());
+            let subject = if given.has_visit { "Share this visit" } else { "Share this layout" };
+            ui.label(RichText::new(subject).size(16.0).strong());
             ui.add_space(4.0);
             given.show(ui, theme);
             ui.add_space(8.0);
@@ -116,7 +146,12 @@ impl GivenLink {
                 return;
             }
         };
-        ui.label(quiet(theme, "The layout is in the link itself: no server keeps it."));
+        let text = match (self.has_page, self.has_visit) {
+            (false, _) => "Put it behind the address of a web edition, or open it with underfoot preview.",
+            (true, true) => "Layout and feet are in the link itself: no server keeps them.",
+            (true, false) => "The layout is in the link itself: no server keeps it.",
+        };
+        ui.label(quiet(theme, text));
         ui.add_space(6.0);
         ui.horizontal(|ui| {
             let mut text = link.as_str();

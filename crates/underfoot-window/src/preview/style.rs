@@ -14,14 +14,14 @@ use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::{Faces, Theme};
 
 /// The fonts of the window: those of pictures, and icons.
-pub(super) fn fonts() -> egui::FontDefinitions {
+pub(crate) fn fonts() -> egui::FontDefinitions {
     let mut fonts = underfoot_scene::letters::definitions();
     icons::add_to(&mut fonts);
     fonts
 }
 
 /// Gives every widget of `ctx` the colours of `theme`.
-pub(super) fn apply(ctx: &egui::Context, theme: &Theme) {
+pub(crate) fn apply(ctx: &egui::Context, theme: &Theme) {
     let base = if theme.is_dark() { egui::Theme::Dark } else { egui::Theme::Light };
     ctx.set_theme(base);
     ctx.style_mut_of(base, |style| {
@@ -100,17 +100,17 @@ pub(super) fn selected_ground(theme: &Theme) -> Colour {
 }
 
 /// The background of panels: between canvas and plate.
-pub(super) fn panel_colour(theme: &Theme) -> Colour {
+pub(crate) fn panel_colour(theme: &Theme) -> Colour {
     theme.plate.mix(theme.canvas, 0.35)
 }
 
 /// The frame of a panel at the window's edge.
-pub(super) fn panel_frame(theme: &Theme, margin: Margin) -> egui::Frame {
+pub(crate) fn panel_frame(theme: &Theme, margin: Margin) -> egui::Frame {
     egui::Frame::new().fill(color(panel_colour(theme))).inner_margin(margin)
 }
 
 /// A heading over a part of the side panel, with a short item at its right end; returns the area of its line.
-pub(super) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnce(&mut Ui)) -> egui::Rect {
+pub(crate) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnce(&mut Ui)) -> egui::Rect {
     ui.add_space(10.0);
     let heading = ui.horizontal(|ui| {
         ui.label(RichText::new(title).size(14.5).color(color(theme.ink)).strong());
@@ -133,7 +133,7 @@ pub(super) fn plot_button(ui: &mut Ui, name: &str) -> bool {
 }
 
 /// A button that stays down while `is_on`; returns whether it was clicked.
-pub(super) fn selectable<'a>(ui: &mut Ui, is_on: bool, text: impl egui::IntoAtoms<'a>, hint: &str) -> bool {
+pub(crate) fn selectable<'a>(ui: &mut Ui, is_on: bool, text: impl egui::IntoAtoms<'a>, hint: &str) -> bool {
     let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
     ui.add(button).on_hover_text(hint).clicked()
 }
@@ -163,12 +163,12 @@ pub(super) fn toggle<'a>(ui: &mut Ui, is_on: &mut bool, text: impl egui::IntoAto
 }
 
 /// Text of low priority.
-pub(super) fn quiet(theme: &Theme, text: impl Into<String>) -> RichText {
+pub(crate) fn quiet(theme: &Theme, text: impl Into<String>) -> RichText {
     RichText::new(text).color(color(theme.quiet))
 }
 
 /// `text` on a small rounded background of `colour`.
-pub(super) fn pill(ui: &mut Ui, colour: Colour, theme: &Theme, text: &str) -> egui::Response {
+pub(crate) fn pill(ui: &mut Ui, colour: Colour, theme: &Theme, text: &str) -> egui::Response {
     let ground = panel_colour(theme).mix(colour, 0.16);
     let frame = egui::Frame::new().fill(color(ground)).corner_radius(9).inner_margin(Margin::symmetric(8, 2));
     let ink = color(theme.legible(colour, ground));
@@ -193,7 +193,7 @@ pub(super) fn replace_by_typing(ui: &Ui, field: &egui::Response, text: &str) {
 }
 
 /// Writes one line that begins at `at`, centred vertically there; text wider than `width` points ends with dots.
-pub(super) fn write_within(
+pub(crate) fn write_within(
     painter: &egui::Painter,
     at: egui::Pos2,
     width: f32,

@@ -9,6 +9,7 @@ use eframe::egui::{
     RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
+use super::feed::PreviewInput;
 use super::playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 use super::style::{panel_frame, quiet, selectable};
 use underfoot::layout::Colour;
@@ -40,17 +41,24 @@ pub(super) struct TimeLine {
     held_s: Option<f64>,
     /// The time at which the mouse began to mark a part.
     stretch_from_s: Option<f64>,
+    /// The floor that goes on under the window's own feet, once the user has taken over.
+    taken: Option<Box<PreviewInput>>,
 }
 
 impl TimeLine {
     pub(super) fn new(playback: Box<dyn Playback>) -> Self {
-        Self { playback, state: PlaybackState::default(), held_s: None, stretch_from_s: None }
+        Self { playback, state: PlaybackState::default(), held_s: None, stretch_from_s: None, taken: None }
     }
 
     /// The part that is marked, in seconds; `None` without one.
     pub(super) fn part(&self) -> Option<(f64, f64)> {
         let all = (0.0, self.state.length_s);
         self.state.repeats.filter(|part| *part != all)
+    }
+
+    /// The floor that goes on under the window's own feet, once after the user has taken over.
+    pub(super) fn taken_over(&mut self) -> Option<Box<PreviewInput>> {
+        self.taken.take()
     }
 
     fn go_to(&mut self, at_s: f64) {
@@ -76,6 +84,7 @@ impl TimeLine {
                 self.clock(ui, theme);
                 // Lay out from the right first: the line takes the remaining width.
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    self.take_over_button(ui);
                     self.repeat_button(ui);
                     self.speed_menu(ui);
                     self.track(ui, theme);
@@ -128,6 +137,16 @@ impl TimeLine {
             let text = RichText::new(minutes(self.here_s())).size(13.5).color(color(ink));
             ui.label(text).on_hover_text(meaning);
         });
+    }
+
+    fn take_over_button(&mut self, ui: &mut Ui) {
+        if !self.state.can_take_over {
+            return;
+        }
+        let hint = "Go on from this moment with feet of your own: the mouse, fingers, keys";
+        if ui.button("Take over").on_hover_text(hint).clicked() {
+            self.taken = self.playback.take_over().map(Box::new);
+        }
     }
 
     fn repeat_button(&mut self, ui: &mut Ui) {

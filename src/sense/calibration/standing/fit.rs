@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use super::data::StandData;
 use super::equations::Used;
+use super::rivals::is_alike;
 use super::search::{RobustFit, StandSearch};
 use crate::floor::{Calibration, Geometry, LawKind, SensorId};
 use crate::units::Newtons;
@@ -66,6 +67,9 @@ pub struct SensorFit {
     /// How many of the law's two numbers the measurements determine, 0 to 2; the typical part gives the others. A
     /// straight line has one that matters, and counts with two once that is found.
     pub determined: u8,
+    /// Load above which another kind of law, which fits about as well, gives a force that differs by more than a tenth;
+    /// infinite without such a kind.
+    pub sure_to: Newtons,
 }
 
 /// Reason for which stands give no calibration.
@@ -179,18 +183,24 @@ impl StandFit {
             StandLaws { kind, misfit: fit.map_or(f64::INFINITY, |fit| fit.misfit) }
         });
         let laws: Vec<StandLaws> = laws.collect();
-        let best = fits.into_iter().min_by(|one, other| one.misfit.total_cmp(&other.misfit));
-        let RobustFit { kind, found, astray, .. } = best.ok_or(StandError::NoLaw)?;
+        let best = fits.iter().min_by(|one, other| one.misfit.total_cmp(&other.misfit));
+        let RobustFit { kind, found, astray, misfit } = best.ok_or(StandError::NoLaw)?;
         if astray.len() as f64 > MOST_ASTRAY * all as f64 {
             return Err(StandError::Astray { astray: astray.len(), stands: all });
         }
-        for stand in &astray {
+        for stand in astray {
             if let Some(weight) = used.stands.get_mut(*stand) {
                 *weight = 0.0;
             }
         }
-        let (curve, found) = search.solve(kind, &used, Some(&found)).ok_or(StandError::NoLaw)?;
-        Ok(search.conclude(&curve, &used, &found, (laws, astray)))
+        let fit = |kind, found| {
+            let (curve, found) = search.solve(kind, &used, Some(found))?;
+            Some(search.conclude(&curve, &used, &found, (laws.clone(), astray.clone())))
+        };
+        let mut best = fit(*kind, found).ok_or(StandError::NoLaw)?;
+        let rivals = fits.iter().filter(|other| other.kind != *kind && is_alike(other.misfit, *misfit));
+        rivals.filter_map(|other| fit(other.kind, &other.found)).for_each(|rival| best.note_rival(&rival));
+        Ok(best)
     }
 
     /// Returns the sensors that need more stands: with a law that is not determined, or too uncertain.

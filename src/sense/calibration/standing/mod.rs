@@ -13,6 +13,7 @@ mod data;
 mod equations;
 mod fit;
 mod marks;
+mod rivals;
 mod search;
 mod solve;
 #[cfg(test)]

@@ -277,6 +277,7 @@ impl StandSearch<'_> {
             most: Newtons(most as f32),
             uncertainty: shares[0].max(shares[1]) as f32,
             determined: if is_known { determined } else { 0 },
+            sure_to: Newtons(f32::INFINITY),
         }
     }
 }

@@ -19,6 +19,7 @@ use super::tape::{BUTTON, events};
 use crate::end_to_end::{Served, underfoot};
 use crate::output::memory_kb;
 use crate::web::free_address;
+use crate::xvfb::Xvfb;
 
 /// Time-out for an event that must happen: a busy machine draws windows by software.
 const AT_LAST: Duration = Duration::from_secs(120);
@@ -32,34 +33,21 @@ fn wait_until(what: &str, mut happened: impl FnMut() -> bool) {
 }
 
 /// A separate display.
-struct Screen {
-    _server: Served,
-    display: String,
-}
+struct Screen(Xvfb);
 
 impl Screen {
     /// `None`, with a printed message, without Xvfb or xdotool.
     fn open() -> Option<Self> {
-        let has_xdotool = Command::new("xdotool").arg("version").output().is_ok();
-        let server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1600x900x24", "+extension", "GLX", "-nolisten", "tcp"])
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn();
-        let (Ok(mut server), true) = (server.map(Served), has_xdotool) else {
-            println!("not run: there is no Xvfb or no xdotool (Debian: xvfb, xdotool)");
+        if Command::new("xdotool").arg("version").output().is_err() {
+            println!("not run: there is no xdotool (Debian: xdotool)");
             return None;
-        };
-        let mut number = String::new();
-        BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut number).unwrap();
-        assert!(!number.trim().is_empty(), "Xvfb has no free display");
-        Some(Self { _server: server, display: format!(":{}", number.trim()) })
+        }
+        Some(Self(Xvfb::open("1600x900x24")?))
     }
 
     fn xdotool(&self, words: &str) -> String {
         let mut xdotool = Command::new("xdotool");
-        let output = xdotool.env("DISPLAY", &self.display).args(words.split_whitespace()).output().unwrap();
+        let output = xdotool.env("DISPLAY", &self.0.display).args(words.split_whitespace()).output().unwrap();
         String::from_utf8_lossy(&output.stdout).into_owned()
     }
 
@@ -77,7 +65,7 @@ impl Screen {
             .current_dir(folder)
             .arg("preview")
             .args(arguments)
-            .env("DISPLAY", &self.display)
+            .env("DISPLAY", &self.0.display)
             .env("LIBGL_ALWAYS_SOFTWARE", "1")
             .envs(["HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_STATE_HOME"].map(|name| (name, folder)))
             .stdin(Stdio::null())

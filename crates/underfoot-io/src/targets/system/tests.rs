@@ -1,8 +1,6 @@
 //! The outlet on an X server of its own, observed by another client. Skipped without Xvfb.
 #![cfg(all(unix, not(target_os = "macos")))]
 
-use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -13,44 +11,27 @@ use x11rb::rust_connection::RustConnection;
 
 use super::{SystemOutlet, keys};
 use crate::targets::outlet::{Outlet, OutletError};
+use xvfb::Xvfb;
+
+#[path = "../../../../../tests/support/xvfb.rs"]
+mod xvfb;
 
 /// Time-out for what must happen, on a busy machine.
 const AT_LAST: Duration = Duration::from_secs(20);
 
 /// An X server, a client that observes it, and the outlet.
 struct Desk {
-    server: Child,
+    _server: Xvfb,
     observer: RustConnection,
     outlet: SystemOutlet,
 }
 
-impl Drop for Desk {
-    fn drop(&mut self) {
-        let _ = self.server.kill();
-        let _ = self.server.wait();
-    }
-}
-
 impl Desk {
     fn open() -> Option<Self> {
-        let spawned = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "640x480x24", "-nolisten", "tcp"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn();
-        let mut server = match spawned {
-            Ok(server) => server,
-            Err(error) => {
-                println!("not run: there is no Xvfb (Debian: xvfb): {error}");
-                return None;
-            }
-        };
-        let mut number = String::new();
-        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
-        let display = format!(":{}", number.trim());
-        let (observer, _) = RustConnection::connect(Some(&display)).unwrap();
-        let target = KeyboardTarget { window: None, display: Some(display) };
-        Some(Self { server, observer, outlet: SystemOutlet::open(&target).unwrap() })
+        let server = Xvfb::open("640x480x24")?;
+        let (observer, _) = RustConnection::connect(Some(&server.display)).unwrap();
+        let target = KeyboardTarget { window: None, display: Some(server.display.clone()) };
+        Some(Self { _server: server, observer, outlet: SystemOutlet::open(&target).unwrap() })
     }
 
     fn pointer(&self) -> QueryPointerReply {

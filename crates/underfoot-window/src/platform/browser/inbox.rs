@@ -122,9 +122,7 @@ async fn stored(path: &str, file: &File) -> Result<(Incoming, PathBuf), String> 
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("ron") => {}
         Some("mcap") => {
-            return Err(
-                "a page does not play recordings yet; the program does: underfoot preview FILE".into()
-            );
+            return Err("a recording is played if it is dropped on the floor alone".into());
         }
         _ => return Err("a layout is a text in RON, and its name ends in .ron".into()),
     }

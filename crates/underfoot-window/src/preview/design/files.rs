@@ -107,6 +107,14 @@ impl Designer {
         }
     }
 
+    /// Saves a draft of what is not saved, before the window shows another floor.
+    pub(in crate::preview) fn keep_now(&mut self) {
+        if !self.is_saved() {
+            self.storage.drafted_s = f64::NEG_INFINITY;
+            self.keep(0.0);
+        }
+    }
+
     /// Opens a file; returns whether that succeeded.
     pub(super) fn open(&mut self, path: &Path) -> bool {
         match opened(path, self.edited.document.floor(), false) {

@@ -223,7 +223,7 @@ impl Designer {
     /// The layout for a link.
     pub(super) fn to_share(&self) -> LayoutToShare {
         let path = self.storage.file.path().map(Path::to_path_buf);
-        LayoutToShare { name: self.name(), text: self.file_text(), path }
+        LayoutToShare { name: self.name(), text: self.file_text(), path, visit: None }
     }
 
     /// The name of the layout: its file name, or the name that it began with.

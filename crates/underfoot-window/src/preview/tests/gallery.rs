@@ -50,6 +50,20 @@ fn the_first_card_has_the_keyboard_and_escape_opens_nothing() {
 }
 
 #[test]
+fn keys_lead_to_the_next_card_and_open_its_layout() {
+    let mut room = room(false);
+    room.window.get_by_label("Layout").click();
+    room.run(6);
+    room.window.key_press(Key::ArrowRight);
+    room.run(3);
+    while room.commands.try_recv().is_ok() {}
+    room.window.key_press(Key::Enter);
+    room.run(3);
+    assert!(!is_open(&room));
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Open(1)));
+}
+
+#[test]
 fn a_layout_of_the_gallery_is_on_drawing_board_and_floor_in_design() {
     let mut room = room(false);
     for name in ["Design", "File", "Gallery"] {

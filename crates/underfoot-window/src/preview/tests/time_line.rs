@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 
 use super::{EventNews, Room, event, map};
 use crate::preview::sample::at_rest;
-use crate::preview::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
+use crate::preview::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState, PreviewInput};
 use underfoot::engine::{Ignored, IgnoredPress, Snapshot};
 use underfoot::sense::ContactId;
 use underfoot::units::{Instant, Newtons};
@@ -147,4 +147,39 @@ fn a_press_is_counted_once_when_its_moment_is_shown_again() {
     room.write(moment(6000, vec![press(5000)]));
     assert_eq!(counted(&room), 1);
     assert!(room.says("home ignored") && room.says("1 so far"));
+}
+
+/// A visit that another floor goes on from.
+struct Visit(Option<PreviewInput>);
+
+impl Playback for Visit {
+    fn state(&mut self) -> PlaybackState {
+        PlaybackState { length_s: 20.0, can_take_over: self.0.is_some(), ..PlaybackState::default() }
+    }
+
+    fn lead(&mut self, _order: PlaybackOrder) {}
+
+    fn take_over(&mut self) -> Option<PreviewInput> {
+        self.0.take()
+    }
+}
+
+#[test]
+fn the_window_goes_on_with_feet_of_its_own_once_a_visit_is_taken_over() {
+    let layout = Arc::new(map());
+    let (_snapshots, output) = triple_buffer::triple_buffer(&at_rest(&layout));
+    let (window, _program) = crate::preview::channels();
+    let feet = Arc::<Mutex<Vec<crate::preview::PreviewFoot>>>::default();
+    let input = PreviewInput {
+        feet: Some(Box::new(super::Feet(Arc::clone(&feet)))),
+        ..PreviewInput::new(Arc::default(), layout, "simulated floor", output, window)
+    };
+    let mut room = Room::recorded(Box::new(Visit(Some(input))));
+    assert!(!room.window.state().feet.are_led());
+    room.window.get_by_label("Take over").click();
+    room.run(4);
+    assert!(room.window.query_by_label("Time line").is_none());
+    assert!(room.window.state().feet.are_led() && room.window.state().time_line.is_none());
+    room.press(room.place("Home"));
+    assert!(!feet.lock().unwrap().is_empty(), "the mouse is a foot");
 }

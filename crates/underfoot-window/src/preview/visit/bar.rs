@@ -8,6 +8,7 @@ use eframe::egui::{self, Key, Margin, Modifiers, Panel, ProgressBar, RichText, U
 
 use super::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState};
 use crate::preview::icons::{self, Icon};
+use crate::preview::share::LayoutToShare;
 use crate::preview::style::{panel_frame, quiet, selected_ground, switch_button};
 use underfoot::engine::Snapshot;
 use underfoot_scene::egui_painter::color;
@@ -31,7 +32,20 @@ pub(in crate::preview) struct VisitBar {
     /// Name of the files, without their endings.
     name: String,
     form: VisitForm,
+    /// The layout on which the last recording began; `None` where it is not known.
+    layout: Option<LayoutToShare>,
 }
+
+/// A button of the bar that the window follows.
+pub(in crate::preview) enum VisitAction {
+    /// Give the visit away as a link.
+    Share(Box<LayoutToShare>),
+    /// Play the visit in a page of its own.
+    Play(Box<LayoutToShare>),
+}
+
+/// Returns the layout on the screen; `None` where it cannot be shared.
+type LayoutOnScreen<'a> = &'a dyn Fn() -> Option<LayoutToShare>;
 
 impl VisitBar {
     pub(in crate::preview) fn new(desk: Box<dyn VisitDesk>) -> Self {
@@ -41,11 +55,12 @@ impl VisitBar {
             is_open: false,
             name: "visit".into(),
             form: VisitForm::default(),
+            layout: None,
         }
     }
 
     /// Takes in the state, and handles F9.
-    pub(in crate::preview) fn follow(&mut self, ui: &Ui, snapshot: &Snapshot) {
+    pub(in crate::preview) fn follow(&mut self, ui: &Ui, snapshot: &Snapshot, layout: LayoutOnScreen<'_>) {
         let was_recording = self.state.recording.is_some();
         self.state = self.desk.state();
         if was_recording && self.state.recording.is_none() && self.state.kept.is_some() {
@@ -55,7 +70,7 @@ impl VisitBar {
             ui.ctx().request_repaint_after(PICTURE);
         }
         if self.state.off.is_none() && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::F9)) {
-            self.switch(snapshot);
+            self.switch(snapshot, layout);
         }
     }
 
@@ -64,10 +79,13 @@ impl VisitBar {
         [self.state.recording.is_some(), self.state.kept.is_some()]
     }
 
-    fn switch(&mut self, snapshot: &Snapshot) {
+    fn switch(&mut self, snapshot: &Snapshot, layout: LayoutOnScreen<'_>) {
         self.desk.lead(match self.state.recording {
             Some(_) => VisitOrder::End,
-            None => VisitOrder::Begin(Box::new(snapshot.clone())),
+            None => {
+                self.layout = layout();
+                VisitOrder::Begin(Box::new(snapshot.clone()))
+            }
         });
     }
 
@@ -78,10 +96,14 @@ impl VisitBar {
         ui: &mut Ui,
         theme: &Theme,
         snapshot: &Snapshot,
+        layout: LayoutOnScreen<'_>,
         is_compact: bool,
     ) {
         if self.state.kept.is_some() {
-            let hint = "Save, play or export what was recorded";
+            let hint = match self.state.is_for_links {
+                true => "Share or play what was recorded",
+                false => "Save, play or export what was recorded",
+            };
             if switch_button(ui, self.is_open, Icon::Film, "Visit", is_compact, hint) {
                 self.is_open = !self.is_open;
             }
@@ -104,30 +126,84 @@ impl VisitBar {
         button.widget_info(|| WidgetInfo::selected(Role::Button, button.enabled(), is_on, &text));
         let button = match &self.state.off {
             Some(why) => button.on_disabled_hover_text(why),
+            None if self.state.is_for_links => {
+                button.on_hover_text("Record the feet, for a link; F9 does the same")
+            }
             None => button.on_hover_text("Record the floor; F9 does the same"),
         };
         if button.clicked() {
-            self.switch(snapshot);
+            self.switch(snapshot, layout);
         }
     }
 
-    /// Shows the bar; `part` is the part of the time line that is marked.
-    pub(in crate::preview) fn show(&mut self, ui: &mut Ui, theme: &Theme, part: Option<(f64, f64)>) {
-        let Some(kept) = self.state.kept.filter(|_| self.is_open) else { return };
+    /// Shows the bar; `part` is the part of the time line that is marked, and `makes_links` says whether the window can
+    /// make links. Returns the button that the window has to follow.
+    pub(in crate::preview) fn show(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        part: Option<(f64, f64)>,
+        makes_links: bool,
+    ) -> Option<VisitAction> {
+        let kept = self.state.kept.filter(|_| self.is_open)?;
         let frame = panel_frame(theme, Margin::symmetric(14, 6));
+        let mut action = None;
         Panel::bottom("visit").frame(frame).resizable(false).show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 ui.label(quiet(theme, format!("Visit {}", written(&kept))));
+                if makes_links {
+                    action = self.link_buttons(ui);
+                }
+                if self.state.is_for_links {
+                    return self.tell(ui, theme);
+                }
                 let name = egui::TextEdit::singleline(&mut self.name).desired_width(150.0);
                 let field = ui.add(name).on_hover_text("Name of the file, without its ending");
                 field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Name of the visit"));
                 self.keep_buttons(ui);
                 self.export_buttons(ui, part);
-                if let Some(told) = &self.state.told {
-                    ui.label(quiet(theme, told).size(12.5));
-                }
+                self.tell(ui, theme);
             });
         });
+        action
+    }
+
+    fn tell(&self, ui: &mut Ui, theme: &Theme) {
+        if let Some(told) = &self.state.told {
+            ui.label(quiet(theme, told).size(12.5));
+        }
+    }
+
+    /// The buttons for feet that go into a link.
+    fn link_buttons(&mut self, ui: &mut Ui) -> Option<VisitAction> {
+        let (shared, layout) = (self.desk.shared()?, self.layout.clone()?);
+        let visit = match shared {
+            Ok(visit) => visit,
+            Err(why) => {
+                ui.label(RichText::new(why).size(12.5));
+                return self.discard_button(ui);
+            }
+        };
+        let with_visit = || Box::new(LayoutToShare { visit: Some(visit.clone()), ..layout.clone() });
+        let hint = "A link that shows the feet again on this layout, and lets other feet take over";
+        if ui.button("Share this visit").on_hover_text(hint).clicked() {
+            return Some(VisitAction::Share(with_visit()));
+        }
+        if !self.state.is_for_links {
+            return None;
+        }
+        let hint = "In a page of its own, with a time line";
+        if ui.button("Play again").on_hover_text(hint).clicked() {
+            return Some(VisitAction::Play(with_visit()));
+        }
+        self.discard_button(ui)
+    }
+
+    fn discard_button(&mut self, ui: &mut Ui) -> Option<VisitAction> {
+        if self.state.is_for_links && ui.button("Discard").on_hover_text("Delete the recording").clicked() {
+            self.desk.lead(VisitOrder::Discard);
+        }
+        None
     }
 
     /// The buttons for the last recording of the floor: a saved one can still be played. A recording on display has a

@@ -8,7 +8,9 @@ use std::path::PathBuf;
 
 use underfoot::engine::Snapshot;
 
-pub(super) use bar::VisitBar;
+pub(super) use bar::{VisitAction, VisitBar};
+
+use crate::link::SharedVisit;
 
 /// Records the floor on display, and exports the recording; the work is done on other threads.
 pub trait VisitDesk {
@@ -17,6 +19,12 @@ pub trait VisitDesk {
 
     /// Sends a command; the state shows its effect.
     fn lead(&mut self, order: VisitOrder);
+
+    /// The feet of [`VisitState::kept`] for a link; `None` if the floor is not simulated here, a sentence if they do not
+    /// fit into one.
+    fn shared(&self) -> Option<Result<SharedVisit, String>> {
+        None
+    }
 }
 
 /// The state of recording and exporting.
@@ -28,6 +36,8 @@ pub struct VisitState {
     pub kept: Option<VisitSize>,
     /// Whether [`Self::kept`] is lost with the window unless it is saved.
     pub is_unsaved: bool,
+    /// Whether recordings are feet for links, and no files: the bar then only shares and plays them.
+    pub is_for_links: bool,
     /// Why the floor cannot be recorded; `None` if it can.
     pub off: Option<String>,
     /// The export in progress.

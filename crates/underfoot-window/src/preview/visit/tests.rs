@@ -7,7 +7,12 @@ use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 
 use super::{VisitBar, VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
+use crate::link::SharedVisit;
+use crate::preview::share::Share;
 use crate::preview::tests::Room;
+use crate::preview::{LayoutToShare, ShareDesk};
+use egui_kittest::kittest::NodeT;
+use underfoot_sim::{FloorQuality, RecordedFeet};
 
 /// A desk that notes commands and executes none.
 #[derive(Clone, Default)]
@@ -98,4 +103,66 @@ fn a_floor_that_cannot_be_recorded_says_why() {
     room.window.key_press(Key::F9);
     room.run(2);
     assert!(notes.orders().is_empty());
+}
+
+/// A desk whose last visit is feet for a link.
+struct Feet(Notes);
+
+impl VisitDesk for Feet {
+    fn state(&mut self) -> VisitState {
+        self.0.state()
+    }
+
+    fn lead(&mut self, order: VisitOrder) {
+        self.0.lead(order);
+    }
+
+    fn shared(&self) -> Option<Result<SharedVisit, String>> {
+        let feet = RecordedFeet::default();
+        Some(SharedVisit::new(&feet, FloorQuality::Slight, 1).map_err(|error| error.to_string()))
+    }
+}
+
+/// Links that say whether a visit is in them.
+struct Links;
+
+impl ShareDesk for Links {
+    fn link(&self, layout: &LayoutToShare) -> Result<String, String> {
+        Ok(format!("#{} {}", layout.name, layout.visit.is_some()))
+    }
+
+    fn has_page(&self) -> bool {
+        false
+    }
+}
+
+#[test]
+fn feet_are_recorded_on_the_layout_of_that_moment_and_given_away_as_a_link() {
+    let (mut room, notes) = room(VisitState { is_for_links: true, ..VisitState::default() });
+    let app = room.window.state_mut();
+    app.visit = Some(VisitBar::new(Box::new(Feet(notes.clone()))));
+    app.share = Some(Share::new(Box::new(Links)));
+    room.run(2);
+    assert!(!room.says("Share"), "without a page, a layout is not shared alone");
+    room.window.get_by_label("REC").click();
+    room.run(2);
+    assert!(matches!(notes.orders()[..], [VisitOrder::Begin(_)]));
+    let size = VisitSize { length_s: 5.0, bytes: 900 };
+    notes.0.lock().unwrap().0.recording = Some(size);
+    room.run(2);
+    {
+        let state = &mut notes.0.lock().unwrap().0;
+        (state.recording, state.kept) = (None, Some(size));
+    }
+    room.run(2);
+    assert!(!room.says("Export") && !room.says("Save this visit"), "there is no file");
+    room.window.get_by_label("Share this visit").click();
+    room.run(3);
+    let link = room.window.get_by_label("Link").accesskit_node().value();
+    assert_eq!(link, Some("#map true".to_owned()));
+    room.window.get_by_label("Close").click();
+    room.run(2);
+    room.window.get_by_label("Discard").click();
+    room.run(2);
+    assert!(matches!(notes.orders()[..], [VisitOrder::Discard]));
 }

@@ -1,17 +1,7 @@
-//! Draws only the parts of the picture that have changed, where the last picture stays on the canvas.
-//!
-//! Without a graphics card, drawing takes most of each frame; while a foot moves, a tenth of the window changes.
-//!
-//! ```text
-//! shapes of a frame -compared with those on the canvas-> areas that differ -all shapes within them-> shapes to draw
-//! ```
+//! The areas of a window in which two pictures differ, and the shapes in them.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-
-use eframe::egui::epaint::{ClippedShape, PaintCallback, Shape, TextureId};
-use eframe::egui::{Context, FullOutput, Plugin, Rect, pos2};
-use eframe::egui_glow::CallbackFn;
+use eframe::egui::epaint::{ClippedShape, Shape, TextureId};
+use eframe::egui::{Rect, pos2};
 
 /// Maximum number of areas that are drawn separately.
 const MOST_AREAS: usize = 6;
@@ -22,69 +12,10 @@ const SOFT: f32 = 2.0;
 /// Shapes of the old picture among which the counterpart of a new one is looked for.
 const LOOK_AHEAD: usize = 256;
 
-/// Draws only the differences from the picture on the canvas.
-///
-/// The owner keeps the canvas from being cleared between frames, and the window draws its own background.
-#[derive(Default)]
-pub(super) struct Damage {
-    /// The picture on the canvas; `None` for an unknown one.
-    shown: Option<Picture>,
-    /// The latest picture, which is on the canvas once it is `drawn`.
-    latest: Option<Picture>,
-    number: u64,
-    /// The number of the latest picture that was drawn.
-    drawn: Arc<AtomicU64>,
-}
-
-/// The shapes of one frame.
-struct Picture {
-    shapes: Vec<ClippedShape>,
-    screen: Rect,
-    pixels_per_point: f32,
-}
-
-impl Plugin for Damage {
-    fn debug_name(&self) -> &'static str {
-        "damage"
-    }
-
-    fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {
-        let (screen, pixels_per_point) = (ctx.viewport_rect(), output.pixels_per_point);
-        let shapes = std::mem::take(&mut output.shapes);
-        let picture = Picture { shapes, screen, pixels_per_point };
-        // A frame that was computed and not drawn leaves the older picture on the canvas.
-        if self.drawn.load(Ordering::Relaxed) == self.number {
-            self.shown = self.latest.take();
-        }
-        let changed: Vec<TextureId> = output.textures_delta.set.keys().copied().collect();
-        let areas = match &self.shown {
-            Some(shown) if shown.screen == screen && shown.pixels_per_point == pixels_per_point => {
-                areas(&shown.shapes, &picture.shapes, &changed)
-            }
-            _ => vec![Rect::EVERYTHING],
-        };
-        let areas = joined(areas.into_iter().map(|area| on_pixels(area.intersect(screen), pixels_per_point)));
-        output.shapes = within(&picture.shapes, &areas);
-        self.number += 1;
-        output.shapes.push(self.mark(screen));
-        self.latest = Some(picture);
-    }
-}
-
-impl Damage {
-    /// A shape that notes that the picture has been drawn.
-    fn mark(&self, screen: Rect) -> ClippedShape {
-        let (drawn, number) = (Arc::clone(&self.drawn), self.number);
-        let note = CallbackFn::new(move |_, _| drawn.store(number, Ordering::Relaxed));
-        let shape = Shape::Callback(PaintCallback { rect: screen, callback: Arc::new(note) });
-        ClippedShape::new(screen, shape)
-    }
-}
-
 /// The areas in which two pictures may differ; those with a texture that has `changed` always do.
 ///
 /// Shapes that both have in the same order are equal; so outside the areas of all others, the pictures are equal.
-fn areas(old: &[ClippedShape], new: &[ClippedShape], changed: &[TextureId]) -> Vec<Rect> {
+pub(super) fn areas(old: &[ClippedShape], new: &[ClippedShape], changed: &[TextureId]) -> Vec<Rect> {
     let mut areas = Vec::new();
     let mut rest = old;
     for shape in new {
@@ -123,14 +54,14 @@ fn is_of(shape: &Shape, textures: &[TextureId]) -> bool {
 }
 
 /// `area` with its sides moved outwards to the edges of pixels.
-fn on_pixels(area: Rect, pixels_per_point: f32) -> Rect {
+pub(super) fn on_pixels(area: Rect, pixels_per_point: f32) -> Rect {
     let down = |x: f32| (x * pixels_per_point).floor() / pixels_per_point;
     let up = |x: f32| (x * pixels_per_point).ceil() / pixels_per_point;
     Rect::from_min_max(pos2(down(area.min.x), down(area.min.y)), pos2(up(area.max.x), up(area.max.y)))
 }
 
 /// A few areas that cover all of these and do not overlap: soft edges that are drawn twice are too dark.
-fn joined(areas: impl Iterator<Item = Rect>) -> Vec<Rect> {
+pub(super) fn joined(areas: impl Iterator<Item = Rect>) -> Vec<Rect> {
     let mut all: Vec<Rect> = Vec::new();
     for area in areas.filter(Rect::is_positive) {
         let mut area = area;
@@ -163,7 +94,7 @@ fn nearest(areas: &[Rect]) -> (usize, usize) {
 }
 
 /// The parts of `shapes` in `areas`.
-fn within(shapes: &[ClippedShape], areas: &[Rect]) -> Vec<ClippedShape> {
+pub(super) fn within(shapes: &[ClippedShape], areas: &[Rect]) -> Vec<ClippedShape> {
     let bounds: Vec<Rect> = shapes.iter().map(reach).collect();
     let parts = areas.iter().flat_map(|area| {
         shapes.iter().zip(&bounds).filter(|(_, bounds)| bounds.intersects(*area)).map(|(shape, _)| {
