@@ -63,7 +63,7 @@ impl PolledMirror {
     }
 
     /// Lets the time pass up to `now` if no frame has arrived for 40 ms, so that a silence is detected here as it is
-    /// there, whatever the delay of the network is.
+    /// there, at any delay of the network.
     pub fn pass(&self, now: Duration) {
         self.advance(now, Duration::ZERO);
     }

@@ -25,8 +25,8 @@ const LOOK_MS: i32 = 8;
 /// Interval between attempts to reach an absent server.
 const AGAIN: Duration = Duration::from_secs(1);
 
-/// Shows the floor that the server of this page serves at `path`, in `canvas`. `hint` tells the user in the window what
-/// the browser withholds from this page; empty if nothing. `say` shows a text in place of the window until the page has
+/// Shows the floor that the server of this page serves at `path`, in `canvas`. `hint` names to the user the
+/// functions that the browser withholds from this page; empty if none. `say` shows a text in place of the window until the page has
 /// joined.
 ///
 /// # Errors

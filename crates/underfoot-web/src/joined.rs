@@ -203,7 +203,7 @@ impl JoinedFloor {
         Ok(())
     }
 
-    /// Notes at `now` that the connection is lost: nothing on the floor is known any more, so every foot goes and every
+    /// Notes at `now` that the connection is lost: the state of the floor is unknown, so every foot vanishes and every
     /// control is released.
     pub fn lose(&mut self, why: &str, now: Duration) {
         self.desk.lose(why);
@@ -214,19 +214,19 @@ impl JoinedFloor {
         }
     }
 
-    /// Carries out the commands of the window and notices what silence means at `now`; called every few milliseconds.
+    /// Carries out the commands of the window, and detects silence at `now`; called every few milliseconds.
     /// Returns the requests to send to the server.
     ///
     /// # Errors
     /// The reason why the connection is of no more use: the server is silent.
     pub fn run_until(&mut self, now: Duration) -> Result<Vec<String>, String> {
         while let Ok(command) = self.window.commands.try_recv() {
-            // No other program changes the files of a page, which nothing watches.
+            // No other program changes the files of a page, so none are watched.
             if let Err(PreviewCommand::SaveFloor { .. }) = self.desk.apply(command) {
                 self.tell("The file of the floor is where the floor is served: check and save it there.");
             }
         }
-        // A page that was busy has not taken yet what came meanwhile; what came before the last call it has.
+        // A busy page takes frames late: only those that arrived before the last call are certainly taken.
         let since = std::mem::replace(&mut self.looked, now);
         self.run.mirror.pass(since);
         self.run.note_time();
