@@ -75,7 +75,7 @@ pub mod floor;
 pub mod ground;
 pub mod layout;
 pub mod messages;
-#[cfg(feature = "record")]
+#[cfg(feature = "mirror")]
 pub mod mirror;
 pub mod outgoing;
 #[cfg(feature = "threads")]

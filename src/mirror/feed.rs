@@ -6,9 +6,10 @@ use std::time::Duration;
 
 use super::frame;
 use crate::floor::Geometry;
-use crate::recording::{Entries, EntrySink, tapped};
+use crate::recording::{EntrySink, tapped};
 use crate::sink::{SinkError, Worker};
 use crate::source::FloorInput;
+use crate::source::log::Entries;
 
 /// Span of the floor's time in one frame, which is the maximum delay that framing adds.
 const BATCH: Duration = Duration::from_millis(4);

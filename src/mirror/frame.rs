@@ -14,7 +14,7 @@
 use thiserror::Error;
 
 use super::VERSION;
-use crate::recording::{END, Entries, GAPS, LAYOUTS, LogEntry, PACKETS, REQUESTS, SILENCE};
+use crate::source::log::{END, Entries, GAPS, LAYOUTS, LogEntry, PACKETS, REQUESTS, SILENCE};
 use crate::units::Instant;
 use crate::wire::Decoder;
 
@@ -30,6 +30,7 @@ const MOST_ENTRIES: usize = 8192;
 pub struct BadFrame;
 
 /// Appends a frame of these entries to `bytes`.
+#[cfg(feature = "record")]
 pub(super) fn write(entries: &Entries, bytes: &mut Vec<u8>) {
     let first = entries.first().map_or(Instant::START, |(taken, _)| *taken).micros();
     bytes.push(VERSION);

@@ -8,9 +8,9 @@ use crate::engine::{ControlState, Snapshot};
 use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::outgoing::json::{Few, GreetingRecord, Head, Line, Message, StateRecord, json_value};
-use crate::recording::read_layout;
 use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
+use crate::source::log::read_layout;
 use crate::units::Instant;
 
 /// Reasons why a window can't join.

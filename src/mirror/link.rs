@@ -13,8 +13,8 @@ use tungstenite::handshake::HandshakeError;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error, Message, WebSocket};
 
-use super::{Greeting, MirrorInput, MirrorSource};
-use crate::outgoing::json::{Head, Line, RequestRecord};
+use super::{Greeting, MirrorInput, MirrorSource, MirrorText};
+use crate::outgoing::json::{Line, RequestRecord};
 
 /// Interval between attempts to reach an absent server.
 const AGAIN: Duration = Duration::from_secs(1);
@@ -35,9 +35,6 @@ const LARGEST: usize = 16 << 20;
 /// Maximum number of waiting messages to the window, and of waiting requests to the server; further messages block
 /// the connection, further requests are dropped.
 const WAITING: usize = 64;
-
-/// Lines that are passed on; the receiver senses the same packets and so derives the rest.
-const PASSED_ON: [&str; 4] = ["state", "changed", "page", "error"];
 
 /// News from a server.
 #[derive(Debug)]
@@ -194,23 +191,11 @@ impl Link {
 
     /// Processes a line; the inner error is the reason why the server can't be shown.
     fn hear(&self, text: &str, input: &mut Option<MirrorInput>) -> Result<Result<(), String>, Over> {
-        let no_sense = |error| format!("the server says what makes no sense: {error}");
-        let head = match Head::read(text.as_bytes()) {
-            Ok(head) => head,
-            Err(error) => return Ok(Err(no_sense(error))),
-        };
-        if !Greeting::is_in(&head) {
-            if PASSED_ON.contains(&head.event()) {
-                match head.line(text.as_bytes()) {
-                    Ok(line) => self.tell(MirrorNews::Line(Box::new(line)))?,
-                    Err(error) => return Ok(Err(no_sense(error))),
-                }
-            }
-            return Ok(Ok(()));
-        }
-        let greeting = match Greeting::read(text) {
-            Ok(greeting) => Box::new(greeting),
-            Err(error) => return Ok(Err(error.to_string())),
+        let greeting = match MirrorText::read(text) {
+            Ok(MirrorText::Greeting(greeting)) => greeting,
+            Ok(MirrorText::Line(line)) => return self.tell(MirrorNews::Line(line)).map(Ok),
+            Ok(MirrorText::Other) => return Ok(Ok(())),
+            Err(why) => return Ok(Err(why)),
         };
         match input {
             Some(input) => {

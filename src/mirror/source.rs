@@ -1,7 +1,6 @@
 //! The stream as a source of packets.
 
-use std::collections::VecDeque;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -9,11 +8,11 @@ use std::time::{Duration, Instant as HostInstant};
 
 use super::Greeting;
 use super::frame::{self, BadFrame};
-use crate::floor::Geometry;
-use crate::recording::{Entries, LogEntry, decoder, read_layout};
+use super::stream::{Counters, LATE, MirrorStream};
+use crate::source::log::{Entries, LogEntry, decoder};
 use crate::source::{FloorInput, Incoming, Replay, SensorSource, Shared, SourceError};
 use crate::units::{HostClock, Instant};
-use crate::wire::{Decoder, LinkCounters, Request, SensorPacket};
+use crate::wire::{Decoder, LinkCounters, SensorPacket};
 
 /// Maximum number of waiting frames, four seconds of them, and maximum size of their content: four seconds of a
 /// stadium's boards. A sender with more blocks.
@@ -26,10 +25,6 @@ const ENTRY_BYTES: usize = size_of::<(Instant, LogEntry)>();
 /// Interval between two checks for room.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// Maximum delay of a frame before time advances without it: shorter than the time after which a board counts as
-/// lost, and longer than the delays in the network of one building.
-const LATE: Duration = Duration::from_millis(40);
-
 /// Input for frames of the stream.
 #[derive(Debug)]
 pub struct MirrorInput {
@@ -37,13 +32,6 @@ pub struct MirrorInput {
     waiting: Waiting,
     decoder: Decoder,
     counters: Arc<Counters>,
-}
-
-#[derive(Debug, Default)]
-struct Counters {
-    now_us: AtomicU64,
-    bad: AtomicU64,
-    left_out: AtomicU64,
 }
 
 impl MirrorInput {
@@ -121,91 +109,59 @@ impl MirrorInput {
 pub struct MirrorSource {
     frames: Receiver<Entries>,
     waiting: Waiting,
-    ahead: VecDeque<(Instant, LogEntry)>,
-    now: Instant,
+    stream: MirrorStream,
     /// The server's time at the end of the last frame, and the time of its arrival here.
     arrived: (Instant, HostInstant),
-    geometry: Geometry,
-    /// The text of the current layout.
-    layout: String,
-    counters: Arc<Counters>,
 }
 
 impl MirrorSource {
     /// Returns a source for the floor of this greeting, and the input for its frames.
     #[must_use]
     pub fn new(greeting: &Greeting) -> (MirrorInput, Self) {
-        let (now, geometry, layout) = (greeting.now, greeting.floor.geometry, greeting.layout_text.clone());
+        let stream = MirrorStream::new(greeting);
         let (sender, frames) = sync_channel(WAITING);
-        let counters = Arc::<Counters>::default();
-        counters.now_us.store(now.micros(), Ordering::Relaxed);
         let waiting = Waiting::default();
         *waiting.lock() = Some(0);
         let input = MirrorInput {
             frames: sender,
             waiting: waiting.clone(),
             decoder: decoder(),
-            counters: Arc::clone(&counters),
+            counters: Arc::clone(&stream.counters),
         };
-        let arrived = (now, HostInstant::now());
-        (input, Self { frames, waiting, ahead: VecDeque::new(), now, arrived, geometry, layout, counters })
+        let arrived = (stream.now(), HostInstant::now());
+        (input, Self { frames, waiting, stream, arrived })
     }
 
     /// The server's clock, as known here.
     #[must_use]
     pub fn clock(&self) -> HostClock {
-        let counters = Arc::clone(&self.counters);
+        let counters = Arc::clone(&self.stream.counters);
         Arc::new(move || Instant::from_micros(counters.now_us.load(Ordering::Relaxed)))
     }
 
     /// Returns a counter of the entries missing from the stream, readable from other threads.
     pub fn left_out(&self) -> impl Fn() -> u64 + Send + 'static {
-        let counters = Arc::clone(&self.counters);
+        let counters = Arc::clone(&self.stream.counters);
         move || counters.left_out.load(Ordering::Relaxed)
     }
 
     /// The next packet; waits for it at most `patience` and returns `None` if none arrived. It never ends by itself,
     /// since a server may come back.
     pub(super) fn next(&mut self, patience: Duration) -> Option<SensorPacket> {
-        if self.ahead.is_empty() {
+        if self.stream.is_empty() {
             self.wait(patience);
         }
-        loop {
-            match self.advance() {
-                Some(LogEntry::Packet(packet)) => return Some(packet),
-                Some(LogEntry::Silence | LogEntry::End) | None => return None,
-                Some(LogEntry::Gap(entries)) => {
-                    self.counters.left_out.fetch_add(entries, Ordering::Relaxed);
-                }
-                Some(entry @ (LogEntry::Request(_) | LogEntry::Layout(_))) => {
-                    // The server takes these before the next packet.
-                    self.ahead.push_front((self.now, entry));
-                    return None;
-                }
-            }
-        }
+        self.stream.next()
     }
 
     /// The present on the server's clock, as known here.
     pub(super) const fn now(&self) -> Instant {
-        self.now
+        self.stream.now()
     }
 
     /// Number of invalid frames, as malformed.
     pub(super) fn counters(&self) -> LinkCounters {
-        LinkCounters { malformed: self.counters.bad.load(Ordering::Relaxed), ..LinkCounters::default() }
-    }
-
-    fn set_now(&mut self, to: Instant) {
-        self.now = self.now.max(to);
-        self.counters.now_us.store(self.now.micros(), Ordering::Relaxed);
-    }
-
-    /// The next entry.
-    fn advance(&mut self) -> Option<LogEntry> {
-        let (taken, entry) = self.ahead.pop_front()?;
-        self.set_now(taken);
-        Some(entry)
+        self.stream.link_counters()
     }
 
     /// Waits for a frame for at most `patience`; without one, advances the time.
@@ -213,9 +169,7 @@ impl MirrorSource {
         match self.frames.recv_timeout(patience) {
             Ok(entries) => {
                 self.waiting.take(size_of_all(&entries));
-                let until = entries.last().map_or(self.now, |(taken, _)| self.now.max(*taken));
-                self.arrived = (until, HostInstant::now());
-                self.ahead.extend(entries);
+                self.arrived = (self.stream.add(entries), HostInstant::now());
             }
             Err(gone) => {
                 if gone == RecvTimeoutError::Disconnected {
@@ -224,7 +178,7 @@ impl MirrorSource {
                 let (until, at) = self.arrived;
                 let silent = at.elapsed();
                 if silent > LATE {
-                    self.set_now(until + silent);
+                    self.stream.set_now(until + silent);
                 }
             }
         }
@@ -261,20 +215,6 @@ impl SensorSource for Shared<MirrorSource> {
 
 impl Replay for MirrorSource {
     fn take(&mut self) -> Option<Incoming> {
-        self.ahead
-            .front()
-            .filter(|(_, entry)| matches!(entry, LogEntry::Request(_) | LogEntry::Layout(_)))?;
-        match self.advance()? {
-            // The server has answered the sender of the request.
-            LogEntry::Request(request) => Some(Incoming::Request(Request { sender: None, ..request })),
-            LogEntry::Layout(text) if text != self.layout => {
-                let layout = read_layout(&text, &self.geometry)
-                    .inspect_err(|problems| tracing::warn!("the server's layout can't be read: {problems}"))
-                    .ok()?;
-                self.layout = text;
-                Some(Incoming::Layout(Box::new(layout)))
-            }
-            _ => None,
-        }
+        self.stream.take()
     }
 }

@@ -7,15 +7,15 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use super::frame::{self, BadFrame};
-use super::{Follower, Greeting, MirrorError, MirrorSource};
+use super::{Follower, Greeting, MirrorError, MirrorSource, PolledMirror};
 use crate::engine::{Engine, Snapshot};
 use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::outgoing::json::{Head, Line, Message};
-use crate::recording::{Entries, LogEntry, decoder};
 use crate::schema::{Kinds, builtin_layout, parse_layout};
 use crate::sense::Method;
-use crate::source::{Incoming, Replay};
+use crate::source::log::{Entries, LogEntry, decoder};
+use crate::source::{FloorInput, Incoming, Replay};
 use crate::units::{Instant, Newtons};
 use crate::wire::{ControlMessage, Readings, Request, SensorPacket, read_json};
 
@@ -303,4 +303,37 @@ fn what_is_refused_is_not_asked_for_ever() {
     let asked = (0..100).map(|tenth| Duration::from_millis(100 * tenth));
     let count: usize = asked.map(|now| follower.corrections(&layout, &here, now).len()).sum();
     assert_eq!(count, 3);
+}
+
+#[test]
+fn a_page_takes_the_same_entries_and_notices_silence_by_its_own_clock() {
+    let layout = layout("map");
+    let ms = Duration::from_millis;
+    let greeting = greeting_of(&engine(&layout), &layout);
+    let (mirror, mut input) = PolledMirror::new(&greeting, ms(100));
+    assert!(!mirror.has_more());
+    mirror.put(&framed(&everything()), ms(110)).unwrap();
+    assert_eq!(mirror.put(b"\x01 nonsense", ms(110)), Err(BadFrame));
+    let next = |input: &mut FloorInput| input.source.next(ms(5)).unwrap();
+    assert_eq!(next(&mut input), Some(packet(2, u32::MAX, 9_000_040)));
+    assert_eq!(next(&mut input), None, "a request comes first");
+    let Some(Incoming::Request(_)) = input.replay.as_mut().unwrap().take() else { panic!("a request") };
+    assert_eq!(next(&mut input), None, "silence");
+    assert!(input.replay.as_mut().unwrap().take().is_none(), "the layout can't be read");
+    assert_eq!(next(&mut input), Some(packet(0, 0, 9_003_600)));
+    assert!(mirror.has_more(), "the end");
+    assert_eq!((next(&mut input), mirror.has_more(), mirror.left_out()), (None, false, 7));
+    assert_eq!(input.source.counters().malformed, 1);
+
+    let end = Instant::from_millis(9004);
+    assert_eq!((mirror.arrived(), input.source.now()), (end, end));
+    mirror.pass(ms(150));
+    assert_eq!(mirror.now(), end, "a frame may be a little late");
+    mirror.pass(ms(250));
+    assert_eq!(mirror.now(), end + ms(140));
+    mirror.end(ms(250));
+    assert_eq!(mirror.now(), end + ms(1000), "all boards are lost at once");
+    mirror.put(&framed(&vec![(end + ms(4), LogEntry::Silence)]), ms(260)).unwrap();
+    assert_eq!(next(&mut input), None);
+    assert_eq!(mirror.now(), end + ms(1000), "it never goes back");
 }

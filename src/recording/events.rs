@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::tap::Entries;
 use super::writer::Job;
 use crate::outgoing::json::Head;
+use crate::source::log::Entries;
 use crate::units::Instant;
 
 /// Receives the jobs of a recording.

@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use mcap::records::op;
 
 use super::chunk::Chunk;
-use super::entry::{self, LogEntry};
 use super::parts::{Attachment, McapMessage, channel, metadata, statistics};
 use super::records::{RawRecord, ReadState, Records};
 use super::{EVENTS, FLOOR, LAYOUT, METADATA, TOPICS};
+use crate::source::log::{self, LogEntry};
 use crate::units::Instant;
 use crate::wire::{Decoder, Readings};
 
@@ -77,7 +77,7 @@ impl MessageReader {
             opened,
             chunk: None,
             topics: HashMap::new(),
-            decoder: entry::decoder(),
+            decoder: log::decoder(),
             counts: Counts::default(),
             is_past_data: false,
             end: None,

@@ -7,10 +7,9 @@
 
 mod bytes;
 mod chunk;
-#[cfg_attr(not(feature = "record"), allow(dead_code, reason = "a replay writes no entries"))]
-mod entry;
 #[cfg(feature = "record")]
 mod events;
+#[cfg(feature = "record")]
 mod kept;
 mod messages;
 mod order;
@@ -43,11 +42,8 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::schema::Diagnostics;
+use crate::source::log::{END, GAPS, LAYOUT, LAYOUTS, PACKETS, REQUESTS, SILENCE};
 
-#[cfg(feature = "record")]
-pub(crate) use entry::{LogEntry, decoder};
-#[cfg(feature = "record")]
-pub(crate) use kept::read_layout;
 pub use reader::Recording;
 #[cfg(feature = "record")]
 pub use recorder::{Recorded, Recorder, WhenBehind};
@@ -56,19 +52,13 @@ pub use replay::{Progress, ReplaySource, Speed};
 #[cfg(feature = "record")]
 pub use switch::RecordingSwitch;
 #[cfg(feature = "record")]
-pub(crate) use tap::{Entries, EntrySink, tapped};
+pub(crate) use tap::{EntrySink, tapped};
 pub use timeline::{MarkKind, Timeline, TimelineMark};
 pub use transport::Transport;
 #[cfg(feature = "record")]
 pub use trim::Trimmed;
 
-/// Topics of a recording.
-pub(crate) const PACKETS: &str = "/underfoot/packets";
-pub(crate) const SILENCE: &str = "/underfoot/silence";
-pub(crate) const REQUESTS: &str = "/underfoot/requests";
-pub(crate) const LAYOUTS: &str = "/underfoot/layouts";
-pub(crate) const GAPS: &str = "/underfoot/gaps";
-pub(crate) const END: &str = "/underfoot/end";
+/// Topic of the lines of events, beside those of the entries.
 const EVENTS: &str = "/underfoot/events";
 
 const TOPICS: [&str; 7] = [PACKETS, SILENCE, REQUESTS, LAYOUTS, GAPS, END, EVENTS];
@@ -89,9 +79,8 @@ const LEARNT: &str = "learnt";
 /// all is displayed.
 const BEGINS: &str = "begins_us";
 
-/// Names of the attachments.
+/// Name of the attachment of the floor; that of the layout is [`LAYOUT`].
 const FLOOR: &str = "floor.ron";
-const LAYOUT: &str = "layout.ron";
 
 /// Reasons why a recording can't be made or read.
 #[derive(Debug, Error)]

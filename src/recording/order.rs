@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::path::Path;
 
-use super::entry::LogEntry;
 use super::messages::{LogPart, MessageReader, Numbered};
+use crate::source::log::LogEntry;
 use crate::units::Instant;
 
 /// Maximum number of entries of one time that are sorted: a second of a floor of 65 boards.

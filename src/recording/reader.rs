@@ -6,7 +6,6 @@ use std::path::Path;
 
 use mcap::records::op;
 
-use super::kept::read_layout;
 use super::messages::{LogPart, MessageReader};
 use super::order::Ordered;
 use super::parts::{Attachment, metadata};
@@ -17,6 +16,7 @@ use crate::floor::{Floor, FloorFile};
 use crate::layout::Layout;
 use crate::schema;
 use crate::sense::Method;
+use crate::source::log::read_layout;
 use crate::units::Instant;
 use underfoot_format::file::open_ordinary;
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 use super::RecordingError;
 use super::events::{EventLines, JobSink};
 use super::kept::as_kept;
-use super::tap::{Entries, EntrySink, tapped};
+use super::tap::{EntrySink, tapped};
 use super::writer::{Job, RecordingFile, RecordingHead};
 use crate::floor::Floor;
 use crate::layout::Layout;
@@ -17,6 +17,7 @@ use crate::schema;
 use crate::sense::Method;
 use crate::sink::{JsonSink, SinkError, Worker};
 use crate::source::FloorInput;
+use crate::source::log::Entries;
 
 /// Behaviour when the disk is slower than the recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

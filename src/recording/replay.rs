@@ -5,12 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
-use super::entry::LogEntry;
-use super::kept::read_layout;
 use super::messages::LogPart;
 use super::order::Ordered;
 use super::transport::Transport;
 use crate::floor::Geometry;
+use crate::source::log::{LogEntry, read_layout};
 use crate::source::{FloorInput, Incoming, Replay, SensorSource, Shared, SourceError};
 use crate::units::{HostClock, Instant};
 use crate::wire::{LinkCounters, Request, SensorPacket};

@@ -1,11 +1,10 @@
 //! Requests that bring a floor into the state of another one.
 
-use super::entry::LogEntry;
-use super::tap::Entries;
 use crate::engine::Snapshot;
 use crate::floor::SensorChoice;
 use crate::layout::Layout;
 use crate::sense::Trouble;
+use crate::source::log::{Entries, LogEntry};
 use crate::widget::Indicator;
 use crate::wire::ControlMessage;
 

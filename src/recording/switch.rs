@@ -8,7 +8,7 @@ use std::time::Duration;
 use super::events::{EventLines, JobSink};
 use super::kept::as_kept;
 use super::recorder::{BATCH, Recorder, WhenBehind};
-use super::tap::{Entries, EntrySink, tapped};
+use super::tap::{EntrySink, tapped};
 use super::writer::{Job, RecordingHead};
 use super::{RecordingError, restored};
 use crate::engine::Snapshot;
@@ -17,6 +17,7 @@ use crate::layout::Layout;
 use crate::schema;
 use crate::sense::Method;
 use crate::sink::{JsonSink, SinkError};
+use crate::source::log::Entries;
 use crate::source::{FloorInput, Journal};
 use crate::units::Newtons;
 

@@ -2,16 +2,13 @@
 
 use std::time::Duration;
 
-use super::entry::LogEntry;
 use super::kept::as_kept;
 use crate::floor::Geometry;
 use crate::layout::Layout;
+use crate::source::log::{Entries, LogEntry};
 use crate::source::{FloorInput, Journal, SensorSource, Shared, SourceError};
 use crate::units::Instant;
 use crate::wire::{LinkCounters, Request, SensorPacket};
-
-/// Entries, each with the time at which the server took it.
-pub(crate) type Entries = Vec<(Instant, LogEntry)>;
 
 /// Receives the results of a source: a recording, or remote windows that show the same floor.
 pub(crate) trait EntrySink: Send {

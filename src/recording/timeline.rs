@@ -1,9 +1,9 @@
 //! An overview of a recording: its span and its important events.
 
-use super::entry::LogEntry;
 use super::messages::LogPart;
 use super::reader::Recording;
 use crate::outgoing::json::{Line, Message};
+use crate::source::log::LogEntry;
 use crate::units::Instant;
 
 /// An overview of a recording; of a trimmed one, of the part on display.

@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::RecordingError;
-use super::entry::LogEntry;
 use super::events::time_of;
 use super::kept::as_kept;
 use super::messages::LogPart;
 use super::reader::Recording;
 use super::writer::{RecordingFile, RecordingHead};
 use crate::schema;
+use crate::source::log::LogEntry;
 use crate::units::Instant;
 
 /// Number of entries and lines between two progress reports: about a second of a recording.

@@ -10,7 +10,6 @@ use std::time::{Duration, Instant as HostInstant};
 
 use mcap::records::MessageHeader;
 
-use super::entry::LogEntry;
 use super::pack::PackedFile;
 use super::reader::known_as;
 use super::{
@@ -19,6 +18,7 @@ use super::{
 };
 use crate::sense::Method;
 use crate::sink::Disk;
+use crate::source::log::LogEntry;
 use crate::units::Instant;
 
 /// Interval at which buffered data is written to the file: the maximum loss in a crash of the program.

@@ -3,8 +3,10 @@
 mod fault;
 mod input;
 mod journal;
+#[cfg(any(feature = "mirror", feature = "replay"))]
+pub(crate) mod log;
 mod port;
-#[cfg(any(feature = "net", feature = "replay"))]
+#[cfg(any(feature = "mirror", feature = "net", feature = "replay"))]
 mod shared;
 mod tapped;
 #[cfg(feature = "net")]
@@ -14,7 +16,7 @@ pub use fault::{BadFault, Bursts, FaultInjector, LinkFaults, Outage, Stall};
 pub use input::FloorInput;
 pub use journal::{Incoming, Journal, Replay};
 pub use port::Port;
-#[cfg(any(feature = "net", feature = "replay"))]
+#[cfg(any(feature = "mirror", feature = "net", feature = "replay"))]
 pub(crate) use shared::Shared;
 pub use tapped::{PacketTap, TappedPackets};
 #[cfg(feature = "net")]

@@ -143,8 +143,9 @@ package_wheel() {
 # A package of Debian, in an empty root.
 package_deb() {
     local root=$1 made archive
+    build_web
     made=$release/packaged
-    step cargo build --release --locked --quiet -p underfoot-cli
+    UNDERFOOT_WEB_PACKED=$(packed_web) step cargo build --release --locked --quiet -p underfoot-cli --features web-edition
     rm -rf "$made"
     mkdir -p "$made"
     "$release/underfoot" man --out "$made/man"

@@ -23,7 +23,23 @@ install_web_tools() {
     fi
 }
 
-# Makes the folder target/web.
+# The folder of the compressed page.
+packed_web() { echo "$(realpath "${CARGO_TARGET_DIR:-target}")/web-packed"; }
+
+# Compresses the files of the page for programs that serve it with a floor: the feature web-edition of underfoot-cli takes
+# them in. `served.js` is the program's own.
+pack_web() {
+    local made=$1 packed file
+    packed=$(packed_web)
+    rm -rf "$packed"
+    mkdir -p "$packed"
+    for file in index.html page.css page.js underfoot.js underfoot.wasm; do
+        gzip -9nc "$made/$file" >"$packed/$file.gz"
+    done
+    cat "$packed"/*.gz | sha256sum | cut -c 1-16 >"$packed/version"
+}
+
+# Makes the folders target/web and target/web-packed.
 build_web() {
     local target=${CARGO_TARGET_DIR:-target}
     local made=$target/web bindgen built optimiser=crates/underfoot-web/node_modules/.bin/wasm-opt
@@ -43,6 +59,8 @@ build_web() {
     # Browsers that have an older version stored take this one when the text of offline.js differs.
     sed -i.old "s/VERSION/$(cat "$made"/* | sha256sum | cut -c 1-16)/" "$made/offline.js"
     rm "$made/offline.js.old"
+    pack_web "$made"
     say "$made: $(wc -c <"$made/underfoot.wasm") bytes of WebAssembly, $(gzip -9c "$made/underfoot.wasm" | wc -c) with gzip"
     say "try it: python3 -m http.server --bind 127.0.0.1 --directory $made 8000, then http://127.0.0.1:8000"
+    say "or with a floor, since \`./dev run\` builds it in from now on: ./dev run run map --web 127.0.0.1:9002"
 }

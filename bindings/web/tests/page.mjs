@@ -1,4 +1,4 @@
-// The floor's page in headless Chromium: prints the lines that it receives, and the times at which it shows a
+// The floor's plain page in headless Chromium: prints the lines that it receives, and the times at which it shows a
 // control as held.
 //
 //     node page.mjs CHROMIUM 127.0.0.1:9002 beam [SCREENSHOT]
@@ -41,7 +41,7 @@ await page.exposeFunction("sayHeld", (held) => {
   const now_s = Number(process.hrtime.bigint()) / 1e9;
   print({ now_s, id: watched, held });
 });
-await page.goto(`http://${address}/`);
+await page.goto(`http://${address}/plain`);
 await page.waitForSelector("#row-" + watched);
 if (await page.$("#row-zoom input")) {
   // A user sets a control on the page.

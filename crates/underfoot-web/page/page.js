@@ -1,5 +1,6 @@
-// Starts the window and its sound, and keeps the page for visits without a network.
-import init, { open_recording, start, takes_layouts } from "./underfoot.js";
+// Starts the window and its sound, and keeps the page for visits without a network. A page that a floor serves joins it.
+import { mirror } from "./served.js";
+import init, { join, open_recording, start, takes_layouts } from "./underfoot.js";
 
 const cover = document.getElementById("cover");
 const state = document.getElementById("state");
@@ -36,9 +37,10 @@ addEventListener("drop", async (event) => {
   const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry);
   const found = [];
   for (const entry of entries) await filesIn(entry, found);
-  const recording = found.length === 1 && found.find(([path]) => path.endsWith(".mcap"));
+  // On the floor of a server there is neither a recording nor a visit.
+  const recording = mirror === null && found.length === 1 && found.find(([path]) => path.endsWith(".mcap"));
   if (recording) return play(...recording);
-  if (!takes_layouts()) return;
+  if (mirror === null && !takes_layouts()) return;
   // Of a folder, only what the window can open; a single file of another form gets its own message.
   const texts = found.filter(([path]) => path.endsWith(".ron"));
   const detail = entries.every((entry) => entry.isFile) ? found : texts;
@@ -46,7 +48,8 @@ addEventListener("drop", async (event) => {
 }, true);
 
 // Over plain HTTP from another computer, browsers have no service worker: the page then needs its server.
-if ("serviceWorker" in navigator) {
+// So does a page of a floor, which is of no use without it.
+if (mirror === null && "serviceWorker" in navigator) {
   navigator.serviceWorker.register("offline.js").catch((error) => console.warn("no visits offline:", error));
 }
 
@@ -69,7 +72,7 @@ function atGesture() {
   gestures.forEach((name) => removeEventListener(name, atGesture, true));
   beginSound().catch((error) => console.warn("no sound:", error));
 }
-if (hasSound) gestures.forEach((name) => addEventListener(name, atGesture, true));
+if (hasSound && mirror === null) gestures.forEach((name) => addEventListener(name, atGesture, true));
 
 // A fault of the program ends its frames; the draft of the layout is in the storage.
 addEventListener("error", ({ error }) => {
@@ -87,9 +90,19 @@ const hooks = {
   click: () => navigator.vibrate?.(12),
 };
 
+// Told in the window of a floor's page over plain HTTP from another computer.
+const WITHHELD = "Over http, browsers give a page of another computer no clipboard, no sound and no visits offline: "
+  + "mark links and copy them by keys.";
+
 try {
   await init({ module_or_path: "underfoot.wasm" });
-  await start(document.getElementById("window"), hooks.sound, hooks.play, hooks.click);
+  const canvas = document.getElementById("window");
+  if (mirror === null) {
+    await start(canvas, hooks.sound, hooks.play, hooks.click);
+  } else {
+    state.textContent = "The page joins the floor …";
+    await join(canvas, mirror, isSecureContext ? "" : WITHHELD, (text) => { state.textContent = text; });
+  }
   performance.mark("underfoot started");
   cover.hidden = true;
 } catch (error) {

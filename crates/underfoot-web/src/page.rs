@@ -44,20 +44,28 @@ pub async fn start(
     stage.floor().tell_sound(sound);
     *page.stage.borrow_mut() = Some(stage);
     PAGE.with_borrow_mut(|open| *open = Some(page.clone()));
-    let options = PreviewOptions {
+    // A link has its layout already.
+    let options = PreviewOptions { begins_with_gallery: fragment.len() < 2, ..options() };
+    run_in_frames(&window, page, PageHooks { play, click }, heard);
+    run(input, options, canvas).await.map_err(no_window)
+}
+
+/// The options of the window in a page, which keeps its settings in the storage of the browser.
+pub(super) fn options() -> PreviewOptions {
+    PreviewOptions {
         settings: Some(usual_state().join("window")),
         projection: ProjectionOptions {
             corners: Some(usual_state().join("projection.txt")),
             ..ProjectionOptions::default()
         },
-        // A link has its layout already.
-        begins_with_gallery: fragment.len() < 2,
         ..PreviewOptions::default()
-    };
-    run_in_frames(&window, page, PageHooks { play, click }, heard);
-    run(input, options, canvas).await.map_err(|PreviewError::NoWindow(reason)| {
-        JsValue::from(format!("this browser gives the page no WebGL ({reason})"))
-    })
+    }
+}
+
+/// The sentence for a user whose browser shows no window.
+#[allow(clippy::needless_pass_by_value, reason = "it stands in `map_err`")]
+pub(super) fn no_window(PreviewError::NoWindow(reason): PreviewError) -> JsValue {
+    format!("this browser gives the page no WebGL ({reason})").into()
 }
 
 thread_local! {
@@ -213,16 +221,16 @@ fn opened(
 }
 
 /// The address of this page, up to `#`.
-fn address(window: &Window) -> Result<String, JsValue> {
+pub(super) fn address(window: &Window) -> Result<String, JsValue> {
     let whole = window.location().href()?;
     Ok(whole.split('#').next().unwrap_or_default().to_owned())
 }
 
 /// Links to this page.
-struct PageLinks {
-    address: String,
-    geometry: Geometry,
-    own: OwnTexts,
+pub(super) struct PageLinks {
+    pub(super) address: String,
+    pub(super) geometry: Geometry,
+    pub(super) own: OwnTexts,
 }
 
 impl ShareDesk for PageLinks {

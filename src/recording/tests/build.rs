@@ -5,12 +5,12 @@ use std::path::Path;
 
 use mcap::records::op;
 
-use super::super::entry::LogEntry;
 use super::super::messages::LogPart;
 use super::super::reader::Opening;
 use super::super::{EVENTS, FLOOR, LAYOUT, METADATA, RecordingError, TOPICS, VERSION};
 use crate::floor::{Floor, Geometry};
 use crate::schema::{self, Kinds};
+use crate::source::log::LogEntry;
 use crate::units::Instant;
 use crate::wire::{Readings, SensorPacket};
 

@@ -6,8 +6,8 @@ mod packed;
 
 use arrayvec::ArrayVec;
 
-use super::entry::{LogEntry, decoder};
 use crate::floor::TileId;
+use crate::source::log::{LogEntry, decoder};
 use crate::units::Instant;
 use crate::widget::{Indicator, Value, WidgetId};
 use crate::wire::{ControlMessage, Readings, Request, SensorPacket};

@@ -6,12 +6,12 @@ use std::sync::atomic::AtomicU64;
 use std::sync::mpsc::channel;
 
 use super::super::Recording;
-use super::super::entry::LogEntry;
 use super::super::kept::as_kept;
 use super::super::writer::{Job, RecordingFile, RecordingHead};
 use super::build::{OURS, PAGE, Taken, entries, floor, plain, read};
 use crate::schema::{self, Kinds};
 use crate::sense::Method;
+use crate::source::log::LogEntry;
 use crate::units::Instant;
 
 /// Line of the event of an entry, which stands a little after it in the file.

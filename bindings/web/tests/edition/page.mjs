@@ -33,10 +33,10 @@ export function linkTo(name, text) {
   return `#1.${zlib.deflateSync(JSON.stringify({ name, text })).toString("base64url")}`;
 }
 
-/// A browser of a visitor's own, with nothing stored.
-export async function visitor(executablePath) {
+/// A browser of a visitor's own, with nothing stored, and with further flags.
+export async function visitor(executablePath, ...flags) {
   const userDataDir = fs.mkdtempSync(path.join(os.tmpdir(), "underfoot-visitor-"));
-  const browser = await puppeteer.launch({ executablePath, args: ARGS, headless: true, userDataDir });
+  const browser = await puppeteer.launch({ executablePath, args: [...ARGS, ...flags], headless: true, userDataDir });
   return { browser, end: async () => { await browser.close(); fs.rmSync(userDataDir, { recursive: true, force: true }); } };
 }
 

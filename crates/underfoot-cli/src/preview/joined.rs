@@ -2,24 +2,21 @@
 //! then.
 
 use std::net::SocketAddr;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, Builder};
 use std::time::{Duration, Instant as HostInstant};
 
-use serde_json::{Value, json};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource};
-use underfoot::outgoing::json::{JsonValue, Message, RefusalRecord};
+use underfoot::mirror::{Greeting, MirrorLink, MirrorNews, MirrorSource};
 use underfoot::runtime::Session;
-use underfoot::schema;
 use underfoot::serve::FloorCommand;
 use underfoot::source::{PacketTap, TappedPackets};
 use underfoot_window::preview::{
-    EventNews, LayoutCause, LayoutNews, Notice, PreviewCommand, ProgramChannels, ServerFeed, ServerLink,
-    ServerState, ToWindow, announced,
+    EventNews, LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServedDesk, ServerFeed, ToWindow,
+    announced,
 };
 
 use super::super::failure::Failure;
@@ -28,12 +25,6 @@ use super::super::watch::FileWatch;
 use super::LOOK;
 use super::commands::keep_floor;
 use super::stop_and_wait;
-
-/// Interval between comparisons of the controls with the server's.
-const COMPARE_EVERY: Duration = Duration::from_millis(100);
-
-/// Minimum interval between two sent layouts: a server checks one a second.
-const LAYOUTS_EVERY: Duration = Duration::from_millis(1100);
 
 /// Maximum time for the server's greeting; without it, the window does not open.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -46,17 +37,8 @@ pub(super) struct Joined {
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
     /// The packets of the boards.
     pub(super) packets: TappedPackets,
-    shared: Shared,
-}
-
-/// State of the server, for the window.
-#[derive(Clone)]
-struct Shared(Arc<Mutex<ServerState>>);
-
-impl Shared {
-    fn state(&self) -> MutexGuard<'_, ServerState> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+    /// Reports the state of the server to the window.
+    pub(super) feed: ServerFeed,
 }
 
 impl Joined {
@@ -71,15 +53,8 @@ impl Joined {
         let (greeting, source) = first(&news, address)?;
         let (tap, packets) = TappedPackets::new();
         let run = Run::begin(&greeting, source, &window, &tap)?;
-        let state = ServerState {
-            address: address.to_string(),
-            link: ServerLink::Joined,
-            takes_layouts: greeting.takes_layouts,
-            left_out: 0,
-            areas: Vec::new(),
-        };
-        let shared = Shared(Arc::new(Mutex::new(state)));
-        let (input, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
+        let desk = ServedDesk::new(&greeting, address.to_string(), &window, Duration::ZERO);
+        let (feed, (input, snapshots)) = (desk.feed(), triple_buffer::triple_buffer(&Snapshot::default()));
         let (floor, layout_text) = (greeting.floor.clone(), greeting.layout_text.clone());
         let layout = Arc::new(greeting.layout.clone());
         let mut served = ServedFloor {
@@ -88,30 +63,15 @@ impl Joined {
             run,
             tap,
             window,
-            floor: floor.clone(),
-            served: layout_text.clone(),
-            tried: None,
-            waiting: None,
-            sent: None,
-            controls_off: false,
+            desk,
             snapshots: input,
-            follower: Follower::default(),
             begun: HostInstant::now(),
-            compared: HostInstant::now(),
-            shared: shared.clone(),
             watch: None,
             files,
         };
-        served.follower.begin(&greeting, Duration::ZERO);
         served.watch = served.watch();
         Builder::new().name("joined".into()).spawn(move || served.run()).map_err(failed)?;
-        Ok(Self { floor, layout, layout_text, snapshots, packets, shared })
-    }
-
-    /// Reports the state of the server to the window.
-    pub(super) fn feed(&self) -> ServerFeed {
-        let shared = self.shared.clone();
-        Box::new(move || shared.state().clone())
+        Ok(Self { floor, layout, layout_text, snapshots, packets, feed })
     }
 }
 
@@ -167,22 +127,9 @@ struct ServedFloor {
     run: Run,
     tap: PacketTap,
     window: ProgramChannels,
-    /// The floor that the window shows.
-    floor: Floor,
-    /// The text of the server's layout.
-    served: String,
-    /// The name of the last layout sent to it.
-    tried: Option<String>,
-    /// Name and text of the latest layout to send, and the time of the last one sent.
-    waiting: Option<(String, String)>,
-    sent: Option<HostInstant>,
-    /// Whether its controls must be off during a check of the floor.
-    controls_off: bool,
+    desk: ServedDesk,
     snapshots: triple_buffer::Input<Snapshot>,
-    follower: Follower,
     begun: HostInstant,
-    compared: HostInstant,
-    shared: Shared,
     /// Dropped when the next one starts.
     watch: Option<FileWatch>,
     files: LayoutArgs,
@@ -208,25 +155,19 @@ impl ServedFloor {
         }
     }
 
-    fn say(&self, notice: impl Into<Notice>) {
-        // Messages never wait for a window that is closed or does not draw.
-        let _ = self.window.notices.try_send(notice.into());
-    }
-
     fn hear(&mut self, news: MirrorNews) {
+        let now = self.begun.elapsed();
         match news {
             MirrorNews::Joined(greeting, source) => self.join_again(&greeting, source),
-            MirrorNews::Again(greeting) => self.take(&greeting),
-            MirrorNews::Line(line) => self.hear_line(&line.message),
-            MirrorNews::Lost(why) => self.shared.state().link = ServerLink::Lost(why),
+            MirrorNews::Again(greeting) => self.desk.take(&greeting, now),
+            MirrorNews::Line(line) => self.desk.hear(&line.message, now),
+            MirrorNews::Lost(why) => self.desk.lose(why),
         }
     }
 
     /// Starts again from a new greeting: all earlier state is discarded.
     fn join_again(&mut self, greeting: &Greeting, source: MirrorSource) {
-        if !is_same(&greeting.floor, &self.floor) {
-            let why = "the server has another floor now: open the window anew to see it";
-            self.shared.state().link = ServerLink::Lost(why.into());
+        if !self.desk.suits(greeting) {
             return;
         }
         stop_and_wait(&self.run.session);
@@ -234,108 +175,40 @@ impl ServedFloor {
         let _ = self.window.events.send(EventNews::Restarted(layout));
         match Run::begin(greeting, source, &self.window, &self.tap) {
             Ok(run) => self.run = run,
-            Err(failure) => return self.say(failure.to_string()),
+            Err(failure) => return self.desk.say(failure.to_string()),
         }
-        self.shared.state().link = ServerLink::Joined;
-        self.take(greeting);
-        if self.controls_off {
-            self.link.ask(CONTROLS_OFF, &[json!(true)]);
-        }
+        self.desk.join_again(greeting, self.begun.elapsed());
     }
 
-    /// Stores the server's state as its greeting reports it.
-    fn take(&mut self, greeting: &Greeting) {
-        self.served.clone_from(&greeting.layout_text);
-        self.shared.state().takes_layouts = greeting.takes_layouts;
-        self.follower.begin(greeting, self.begun.elapsed());
-    }
-
-    fn hear_line(&mut self, message: &Message) {
-        let Message::Error(RefusalRecord { request, why }) = message else {
-            return self.follower.hear(message, self.begun.elapsed());
-        };
-        let (request, why) = (request.as_str(), why.0.clone());
-        match self.tried.take_if(|_| request == LAYOUT) {
-            Some(name) => drop(self.window.layouts.try_send(LayoutNews::Refused { name, diagnostics: why })),
-            None => self.say(format!("The server refuses {request}: {why}")),
-        }
-    }
-
-    /// Passes on the latest snapshot, and sets controls to the server's state.
+    /// Passes on the latest snapshot and the requests, and sets controls to the server's state.
     fn look(&mut self) {
-        self.send_layout();
+        let now = self.begun.elapsed();
+        for asked in self.desk.requests(now) {
+            self.link.ask(&asked.request, &asked.args);
+        }
         if self.run.snapshots.update() {
             self.snapshots.input_buffer_mut().clone_from(self.run.snapshots.output_buffer());
             self.snapshots.publish();
         }
-        if self.compared.elapsed() < COMPARE_EVERY {
+        if !self.desk.is_due(now) {
             return;
         }
-        self.compared = HostInstant::now();
-        self.shared.state().left_out = (self.run.left_out)();
+        self.desk.note_left_out((self.run.left_out)());
         let (layout, here) = (self.run.session.snapshot().layout, self.run.snapshots.output_buffer());
-        // Between two layouts, names and places may not match.
-        if here.widgets.len() == layout.widgets.len() {
-            for message in self.follower.corrections(&layout, here, self.begun.elapsed()) {
-                self.run.session.send(FloorCommand::Control(message));
-            }
+        for message in self.desk.corrections(&layout, here, now) {
+            self.run.session.send(FloorCommand::Control(message));
         }
     }
 
-    /// Translates a command of the window into a request to the server.
+    /// Carries out a command of the window.
     fn apply(&mut self, command: PreviewCommand) {
-        match command {
-            PreviewCommand::Enable { id, enabled } => {
-                self.link.ask(&format!("widget/{id}/{}", if enabled { "enable" } else { "disable" }), &[]);
-            }
-            PreviewCommand::Set { id, value } => {
-                let arguments = match json!(JsonValue::from(value)) {
-                    serde_json::Value::Array(pair) => pair,
-                    one => vec![one],
-                };
-                self.link.ask(&format!("widget/{id}/set"), &arguments);
-            }
-            PreviewCommand::Mute(on) => self.link.ask("mute/set", &[json!(on)]),
-            PreviewCommand::MuteTile { tile, on } => {
-                self.link.ask("mute/tile", &[json!(tile.column), json!(tile.row), json!(on)]);
-            }
-            PreviewCommand::Try { layout, name, .. } => self.try_layout(&layout, name),
-            PreviewCommand::Watch(path) => {
+        match self.desk.apply(command) {
+            Err(PreviewCommand::Watch(path)) => {
                 self.files.layout = path;
                 self.watch = self.watch();
             }
-            PreviewCommand::TurnControlsOff(off) => {
-                self.controls_off = off;
-                self.link.ask(CONTROLS_OFF, &[json!(off)]);
-            }
-            PreviewCommand::SaveFloor { floor, path } => self.say(keep_floor(&floor, &path)),
-            PreviewCommand::Open(_) | PreviewCommand::Feel { .. } | PreviewCommand::SaveEffect { .. } => {
-                self.say("That is done where the floor is served.");
-            }
-        }
-    }
-
-    /// Sends the server a layout, if it accepts layouts.
-    fn try_layout(&mut self, layout: &Layout, name: String) {
-        let text = schema::write_layout(layout);
-        if text == self.served {
-            return;
-        }
-        if !self.shared.state().takes_layouts {
-            return self.say(KEEPS);
-        }
-        self.waiting = Some((name, text));
-    }
-
-    /// Sends the latest layout that the window tried, at the rate that a server accepts.
-    fn send_layout(&mut self) {
-        if self.sent.is_some_and(|sent| sent.elapsed() < LAYOUTS_EVERY) {
-            return;
-        }
-        if let Some((name, text)) = self.waiting.take() {
-            self.sent = Some(HostInstant::now());
-            self.tried = Some(name);
-            self.link.ask(LAYOUT, &[Value::String(text)]);
+            Err(PreviewCommand::SaveFloor { floor, path }) => self.desk.say(keep_floor(&floor, &path)),
+            Ok(()) | Err(_) => {}
         }
     }
 
@@ -346,21 +219,6 @@ impl ServedFloor {
             // If the queue is full, it already contains changes.
             let _ = news.try_send(LayoutNews::Changed);
         });
-        watch.inspect_err(|failure| self.say(failure.to_string())).ok().flatten()
+        watch.inspect_err(|failure| self.desk.say(failure.to_string())).ok().flatten()
     }
-}
-
-/// The request that puts a layout on the server's floor.
-const LAYOUT: &str = "layout";
-
-/// The request that keeps controls off while this window checks the floor.
-const CONTROLS_OFF: &str = "controls_off";
-
-/// Message to a user who designs a layout for a server that accepts none.
-const KEEPS: &str = "A design made here stays in this window: the server keeps its layout, and would take another if it were \
-                     started with --web-layouts.";
-
-/// Whether the window that shows `shown` can show `now`: measured values may differ.
-fn is_same(now: &Floor, shown: &Floor) -> bool {
-    now.geometry == shown.geometry && now.boards == shown.boards
 }

@@ -358,7 +358,7 @@ fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
 fn joined(args: &Args, address: SocketAddr) -> Result<(), Failure> {
     let (window, program) = channels();
     let joined = Joined::start(address, program, args.layout.clone())?;
-    let server = Some(joined.feed());
+    let server = Some(joined.feed);
     let design = match args.layout.layout {
         Some(_) => args.design()?,
         None => Some(args.design_of("the server’s layout", joined.layout_text, None)),

@@ -87,12 +87,14 @@ pub(super) fn turn_away(stream: TcpStream, status: &str, why: &str) {
 }
 
 /// Answers with `body` and ends the connection; each line of `head` ends with a line break.
-pub(super) fn answer(mut stream: TcpStream, status: &str, head: &str, body: &str) {
-    // An answer without content must not give its length (RFC 9110, 8.6).
-    let length =
-        if status.starts_with("204") { String::new() } else { format!("Content-Length: {}\r\n", body.len()) };
+pub(super) fn answer(mut stream: TcpStream, status: &str, head: &str, body: impl AsRef<[u8]>) {
+    let body = body.as_ref();
+    // An answer without content must not give its length (RFC 9110, 8.6), nor that of another answer.
+    let has_length = !status.starts_with("204") && !status.starts_with("304");
+    let length = if has_length { format!("Content-Length: {}\r\n", body.len()) } else { String::new() };
+    let head = format!("HTTP/1.1 {status}\r\n{head}{length}Connection: close\r\n\r\n");
     // The client may not wait for the answer.
-    let _ = write!(stream, "HTTP/1.1 {status}\r\n{head}{length}Connection: close\r\n\r\n{body}");
+    let _ = stream.write_all(&[head.as_bytes(), body].concat());
     // Reads the request, so that the system does not cut the answer off.
     let _ = stream.set_read_timeout(Some(LINGER));
     let _ = stream.read(&mut [0; MOST_HEAD]);

@@ -1,5 +1,6 @@
-//! The server for web pages: events as JSON lines over WebSocket, requests the other way, and one page of ours. Windows
-//! that show the same floor join here, at `/mirror`; `watch` answers those who watch the floor for months. `query` is a
+//! The server for web pages: events as JSON lines over WebSocket, requests the other way, and pages of ours. Windows
+//! that show the same floor, and the web edition, join here, at `/mirror`; `watch` answers those who watch the floor for
+//! months. `query` is a
 //! server of its own, for programs that ask for the floor's OSC addresses.
 
 mod accept;
@@ -7,12 +8,15 @@ mod broadcast;
 mod budget;
 mod checks;
 mod client;
+mod edition;
+mod file;
 mod greeting;
 mod http;
 mod layout;
 mod off;
 mod origin;
 mod pages;
+mod plain;
 mod query;
 mod request;
 mod rooms;
@@ -134,7 +138,12 @@ impl WebListener {
     ) -> Result<WebServer, Failure> {
         let Self { listener, origins, takes_layouts, clients, events, feed } = self;
         let failed = |error| Failure::Other(format!("web pages can't be served: {error}"));
-        errln!("The floor as a web page: http://{}/", listener.local_addr().map_err(failed)?);
+        let address = listener.local_addr().map_err(failed)?;
+        if pages::has_edition() {
+            errln!("The floor as a web page: http://{address}/, and plainer at http://{address}/plain");
+        } else {
+            errln!("The floor as a web page: http://{address}/ (`./dev web` makes the whole window of it)");
+        }
         let start = || Checks::start(session.clone(), floor.geometry, messages.clone());
         let checks = takes_layouts.then(start).transpose();
         let shared = Arc::new(Shared {

@@ -258,7 +258,7 @@ fn places_that_are_taken_are_refused_at_once_and_free_again_when_somebody_goes()
         page.clear();
         let mut asked = stream(web);
         asked.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
-        write!(asked, "GET / HTTP/1.1\r\nHost: {web}\r\n\r\n").unwrap();
+        write!(asked, "GET /plain HTTP/1.1\r\nHost: {web}\r\n\r\n").unwrap();
         let _ = asked.read_to_string(&mut page);
     }
     drop((idle, server));

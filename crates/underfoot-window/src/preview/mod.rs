@@ -50,6 +50,7 @@ mod sample;
 mod scopes;
 pub(crate) mod screen_report;
 mod selection;
+mod served;
 mod share;
 mod shown;
 mod stage;
@@ -81,6 +82,7 @@ pub use feed::{
 pub use feeds::{Mouse, SignalScopes, ToWindow, shoes};
 pub use playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 pub use projection::ProjectionOptions;
+pub use served::ServedDesk;
 pub use share::{LayoutToShare, ShareDesk};
 pub use visit::{VisitDesk, VisitForm, VisitOrder, VisitSize, VisitState, VisitWork};
 

@@ -1,7 +1,7 @@
 //! The floor for those who watch it for months: its health as JSON, its metrics for Prometheus, and a dashboard.
 
 mod counts;
-mod dashboard;
+pub(super) mod dashboard;
 mod health;
 mod metrics;
 mod observed;
@@ -36,8 +36,6 @@ impl FloorWatch {
 pub(super) enum Watched {
     Health,
     Metrics,
-    /// A file of the dashboard: its type and its text.
-    File(&'static str, &'static str),
 }
 
 impl Watched {
@@ -46,7 +44,7 @@ impl Watched {
         match path {
             "/health" => Some(Self::Health),
             "/metrics" => Some(Self::Metrics),
-            _ => dashboard::file(path).map(|(kind, text)| Self::File(kind, text)),
+            _ => None,
         }
     }
 
@@ -63,9 +61,6 @@ impl Watched {
             Self::Metrics => {
                 let text = metrics::text(ObservedFloor::of(shared));
                 http::answer(stream, "200 OK", &head(metrics::TYPE), &text);
-            }
-            Self::File(kind, text) => {
-                http::answer(stream, "200 OK", &(head(kind) + dashboard::POLICY), text);
             }
         }
     }

@@ -129,6 +129,7 @@ impl App {
         match &mut self.designer {
             Some(designer) if designer.is_open => {
                 designer.tools(ui, theme, &mut self.top_bar.gallery);
+                designer.put_button(ui, &self.shown);
                 self.share_button(ui, true);
                 self.panel.button(ui, true, true);
             }

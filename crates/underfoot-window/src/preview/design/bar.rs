@@ -11,8 +11,10 @@ use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
 use crate::platform;
 use crate::preview::bars::{MessageStack, message_frame};
+use crate::preview::feed::LayoutCause;
 use crate::preview::gallery::LayoutGallery;
 use crate::preview::icons::{self, Icon, icon_button};
+use crate::preview::shown::ShownFloor;
 use crate::preview::style::{is_entered, quiet, toggle};
 use underfoot::floor::Rect;
 use underfoot_scene::egui_painter::color;
@@ -53,6 +55,20 @@ impl Designer {
         }
         toggle(ui, &mut self.text.is_open, "Text", "The layout as text, beside the floor");
         self.count(ui, theme);
+    }
+
+    /// Shows the button that puts the layout on a server's floor, if the floor belongs to one.
+    pub(in crate::preview) fn put_button(&self, ui: &mut Ui, shown: &ShownFloor) {
+        let Some(server) = &shown.server else { return };
+        let name = "Put on the floor";
+        let button = egui::Button::new(icons::with(Icon::Footprints, "Put"));
+        let button = icons::named(ui.add_enabled(server.takes_layouts, button), name);
+        let hint = "the server checks the layout, and waits until no foot is on a control";
+        let refused = "this server keeps its layout; it takes others if it is started with --web-layouts";
+        let button = button.on_hover_text(format!("{name}: {hint}"));
+        if button.on_disabled_hover_text(format!("{name}: {refused}")).clicked() {
+            self.try_layout(shown, LayoutCause::Designed);
+        }
     }
 
     fn files(&mut self, ui: &mut Ui, gallery: &mut LayoutGallery) {

@@ -9,6 +9,7 @@ mod inspector;
 mod keyboard;
 mod palette;
 mod saving;
+mod served;
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender};
@@ -23,7 +24,9 @@ use tempfile::TempDir;
 use super::*;
 use crate::edit::Template;
 use crate::preview::app::App;
-use crate::preview::{LayoutNews, PreviewCommand, PreviewInput, PreviewOptions, ProgramChannels, channels};
+use crate::preview::{
+    LayoutNews, PreviewCommand, PreviewInput, PreviewOptions, ProgramChannels, ServerFeed, channels,
+};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Rect;
 use underfoot::schema::{builtin_layout, parse_layout};
@@ -51,6 +54,17 @@ impl Desk {
 
     /// The layout of `text` on the floor, and the text `designed` in Design mode.
     fn of(text: &str, designed: &str, path: Option<PathBuf>, state: TempDir) -> Self {
+        Self::served(text, designed, path, state, None)
+    }
+
+    /// As [`Self::of`], on the floor of this server, if any.
+    fn served(
+        text: &str,
+        designed: &str,
+        path: Option<PathBuf>,
+        state: TempDir,
+        server: Option<ServerFeed>,
+    ) -> Self {
         let floor = Arc::new(Floor::default());
         let kinds = Arc::new(Kinds::builtin());
         let layout = Arc::new(parse_layout(text, "it", &kinds, &floor.geometry).unwrap().layout);
@@ -58,6 +72,7 @@ impl Desk {
         let (channels, ProgramChannels { layouts: news, commands, .. }) = channels();
         let input = PreviewInput {
             choices: vec!["map".into()],
+            server,
             design: Some(DesignInput {
                 name: "it.ron".into(),
                 text: designed.into(),

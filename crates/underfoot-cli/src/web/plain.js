@@ -1,30 +1,5 @@
-<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<title>Floor</title>
-<style>
-  body { margin: 1em; font: 15px sans-serif; background: #15181c; color: #e6e6e6; }
-  main { display: flex; flex-wrap: wrap; gap: 1.5em; }
-  canvas { background: #20252b; width: min(90vw, 80vh); }
-  table { border-collapse: collapse; }
-  td, th { padding: .15em .7em .15em 0; text-align: left; font-weight: normal; }
-  th { color: #9aa4ae; }
-  input { width: 7em; }
-  #state { min-height: 1.4em; }
-  .held { color: #ffb000; }
-</style>
-<h1 id="title">Floor</h1>
-<p id="state" role="status">connecting</p>
-<main>
-  <canvas id="floor" width="900" height="900" role="img" aria-label="The floor with its controls and feet"></canvas>
-  <div>
-    <table><thead><tr><th>control<th>value<th>held<th>set</thead><tbody id="controls"></tbody></table>
-    <p id="refusal" role="alert"></p>
-  </div>
-</main>
-<script>
 "use strict";
+// The floor's plain page: controls, values, holds and feet live.
 // A control counts as held for this long (ms) after a line that says so: lines may stop at any time.
 const BELIEVED_FOR = 100;
 const $ = (id) => document.getElementById(id);
@@ -153,8 +128,8 @@ function draw() {
   }
 }
 
+// A program with the web edition serves that in this place.
+$("note").hidden = location.pathname !== "/";
 document.addEventListener("visibilitychange", redraw);
 connect();
 redraw();
-</script>
-</html>
