@@ -21,7 +21,8 @@ mod said;
 #[cfg(feature = "net")]
 mod source;
 mod stream;
-#[cfg(all(test, feature = "record"))]
+#[cfg(test)]
+#[cfg(feature = "record")]
 mod tests;
 mod text;
 

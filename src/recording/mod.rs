@@ -27,7 +27,8 @@ mod restored;
 mod switch;
 #[cfg(feature = "record")]
 mod tap;
-#[cfg(all(test, feature = "record"))]
+#[cfg(test)]
+#[cfg(feature = "record")]
 mod tests;
 mod timeline;
 mod transport;

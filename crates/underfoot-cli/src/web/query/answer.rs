@@ -43,7 +43,7 @@ pub(super) fn serve(stream: TcpStream, head: &RequestHead, shared: &QueryShared)
         admits.unwrap_or_default()
     );
     match answer(head, shared) {
-        Answer::Json(value) => http::answer(stream, "200 OK", &headers, &value.to_string()),
+        Answer::Json(value) => http::answer(stream, "200 OK", &headers, value.to_string()),
         // The status has no content by its definition.
         Answer::NoContent => http::answer(stream, "204 No Content", &headers, ""),
         Answer::NoAttribute => turn_away(stream, "400 Bad Request", "there is no such attribute\n"),

@@ -83,10 +83,10 @@ fn troubles(board: &FoundBoard, rate_hz: Option<f64>, now: Instant) -> Vec<Strin
     let [least, most] = RATES_HZ;
     match rate_hz {
         Some(hz) if hz < least => {
-            troubles.push(format!("{hz:.0} packets a second are too few: at least {least:.0}."))
+            troubles.push(format!("{hz:.0} packets a second are too few: at least {least:.0}."));
         }
         Some(hz) if hz > most => {
-            troubles.push(format!("{hz:.0} packets a second are too many: at most {most:.0}."))
+            troubles.push(format!("{hz:.0} packets a second are too many: at most {most:.0}."));
         }
         _ => {}
     }

@@ -1,5 +1,7 @@
 //! Layouts for the floor of a server.
 
+use egui_kittest::kittest::NodeT;
+
 use super::*;
 use crate::preview::{ServerLink, ServerState};
 
