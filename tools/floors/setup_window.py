@@ -148,7 +148,20 @@ class Guide:
         self.window.click_on("Weight in kilograms")
         self.window.type(str(KILOGRAMS))
         self.window.click_on("Start")
+        self.walk_marks()
+        for walk in range(3):
+            again = self.named(r"^Repeat (the tile|\d+ tiles)$")
+            if not again:
+                break
+            self.shot(f"5-repeat-{walk}")
+            self.window.click_on(again)
+            self.walk_marks()
+        self.shot("5-calibrated")
+
+    def walk_marks(self):
+        """Stands on each mark that the window shows, until the laws are there."""
         begun, known = time.monotonic(), None
+        self.until("^(Keep off the floor|Stand here: .*)$")
         while not self.named("^(The floor is calibrated|.* needs? more stands|Calculating the laws)$"):
             told = self.named("^Stand here: ")
             if told and told != known:
@@ -167,7 +180,6 @@ class Guide:
             time.sleep(0.02)
         self.until("^(The floor is calibrated|.* needs? more stands)$")
         self.boards.leave()
-        self.shot("5-calibrated")
 
     def press(self, columns, rows):
         """Opens the layout, and presses its last button; returns whether the window shows it."""
@@ -182,7 +194,7 @@ class Guide:
                          f'{rows - 1.5 if rows > 1 else 0.5:.2f}), facing: North), '
                          f'Press(widget: "{last}", force_n: 150, hold_ms: 600), Wait(ms: 600000)', "first_layout.ron")
         def is_pressed():
-            return any(re.search(rf"{last}.*(press|click)", widget["name"], re.I)
+            return any(re.match(rf"{last} (pressed|clicked)\b", widget["name"])
                        for report in self.window.others() for widget in report["widgets"])
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline and not is_pressed():

@@ -61,7 +61,10 @@ fn unsure(fit: &StandFit) -> Option<String> {
 pub fn fit_words(fit: &StandFit) -> Vec<String> {
     let (stands, crossings) = (count(fit.stands, "stand"), count(fit.crossings, "way"));
     let mut words = vec![
-        format!("{stands} and {crossings} between them count. The sensors follow a {} law.", fit.kind.name()),
+        format!(
+            "{stands} and {crossings} between them count. All sensors follow one kind of law: {}.",
+            fit.kind.name()
+        ),
         format!(
             "The sums miss the weight by {:.1} %, the feet their marks by {:.1} cm; the body leans {:.1} cm forwards \
              and {:.1} cm to the right.",

@@ -64,8 +64,8 @@ pub struct SensorFit {
     /// Standard error of its force under an eighth and a quarter of the person's weight, the greater of both, as a
     /// share of the force.
     pub uncertainty: f32,
-    /// How many of the law's two numbers the measurements determine, 0 to 2; the typical part gives the others. A
-    /// straight line has one that matters, and counts with two once that is found.
+    /// How many combinations of the law's two numbers the measurements determine, 0 to 2; the typical part gives the
+    /// others. A straight line has one that matters, and counts with two once that is found.
     pub determined: u8,
     /// Load above which another kind of law, which fits about as well, gives a force that differs by more than a tenth;
     /// infinite without such a kind.

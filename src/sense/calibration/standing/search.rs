@@ -263,12 +263,7 @@ impl StandSearch<'_> {
             Some(variance.max(0.0).sqrt() / slope.force)
         };
         let shares = [self.weight_n / 8.0, self.weight_n / 4.0].map(|load| share(load).unwrap_or(f64::NAN));
-        let is_found = |variance: f64, spread: f64| variance.sqrt() < 0.5 * spread;
-        let determined = block.map_or(0, |[pp, _, qq]| {
-            let p = is_found(pp, P_SPREAD);
-            let q = if curve.kind == LawKind::Linear { p } else { is_found(qq, Q_SPREAD) };
-            u8::from(p) + u8::from(q)
-        });
+        let determined = block.map_or(0, |block| determined(curve.kind, block));
         let is_known = most > 0.0 && law.is_plausible();
         SensorFit {
             sensor,
@@ -280,4 +275,18 @@ impl StandSearch<'_> {
             sure_to: Newtons(f32::INFINITY),
         }
     }
+}
+
+/// How many combinations of a law's two numbers with this covariance (pp, pq, qq) are known twice as well as those of
+/// a typical part: the eigenvalues of the covariance in units of the parts' spread. Both numbers of a curve trade off
+/// against each other, so one combination may be known well although neither number is.
+fn determined(kind: LawKind, [pp, pq, qq]: [f64; 3]) -> u8 {
+    let is_found = |variance: f64| variance.max(0.0).sqrt() < 0.5;
+    let (pp, qq) = (pp / (P_SPREAD * P_SPREAD), qq / (Q_SPREAD * Q_SPREAD));
+    if kind == LawKind::Linear {
+        return 2 * u8::from(is_found(pp));
+    }
+    let (mean, half) = (0.5 * (pp + qq), 0.5 * (pp - qq));
+    let root = half.hypot(pq / (P_SPREAD * Q_SPREAD));
+    u8::from(is_found(mean - root)) + u8::from(is_found(mean + root))
 }

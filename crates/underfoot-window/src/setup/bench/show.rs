@@ -2,7 +2,7 @@
 
 use super::{Listens, SetupBench, Work};
 use crate::setup::step::SetupStep;
-use crate::setup::view::{SetupView, StepState, WiringView, WorkView};
+use crate::setup::view::{SensorState, SetupView, StepState, StepView, WiringView, WorkView};
 
 impl SetupBench {
     /// Returns the state for the window.
@@ -10,6 +10,7 @@ impl SetupBench {
         if self.listens == Listens::Anybody {
             self.boards = self.rates.boards(&self.heard, self.now);
         }
+        self.note_answers();
         let mut steps = self.steps.clone();
         let found = &mut steps[SetupStep::Boards.index()];
         found.state = match () {
@@ -29,6 +30,17 @@ impl SetupBench {
             steps,
             fit: record.and_then(|record| record.fit.clone()),
             needy: record.map(|record| record.needy.clone()).unwrap_or_default(),
+        }
+    }
+
+    /// The readings are looked at once every sensor has answered to a load.
+    fn note_answers(&mut self) {
+        let step = &mut self.steps[SetupStep::Readings.index()];
+        let Some(watch) = self.watch.as_ref().filter(|watch| watch.is_rested()) else { return };
+        let answers = |state| matches!(state, SensorState::Answers | SensorState::Saturated);
+        let mut sensors = watch.sensors(self.now).peekable();
+        if step.state == StepState::Open && sensors.peek().is_some() && sensors.all(|it| answers(it.state)) {
+            *step = StepView { state: StepState::Done, words: vec!["Every sensor answers.".to_owned()] };
         }
     }
 

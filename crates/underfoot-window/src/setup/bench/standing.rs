@@ -50,8 +50,17 @@ pub(super) struct StandRecord {
     pub(super) data: StandData,
     pub(super) marks: Vec<StandingMark>,
     weight: Newtons,
+    /// Number of walks.
+    walks: usize,
     pub(super) fit: Option<Arc<StandFit>>,
     pub(super) needy: Vec<TileId>,
+}
+
+impl StandRecord {
+    /// Whether its person has this weight.
+    fn is_of(&self, weight: Newtons) -> bool {
+        (self.weight.0 - weight.0).abs() < SAME_N
+    }
 }
 
 /// A walk from mark to mark.
@@ -136,8 +145,12 @@ impl SetupBench {
         if !tiles.is_empty() {
             walked.retain(|tile| tiles.contains(tile));
         }
-        let marks = StandingMark::of_tiles(&floor.geometry, &walked, 1);
         let weight = Newtons((weight_kg * GRAVITY) as f32);
+        // In each walk of the same person the feet face the other way than in the one before.
+        let record = self.record.as_ref().filter(|record| record.is_of(weight));
+        let rounds = record.map_or(0, |record| record.walks) + 1;
+        let mut marks = StandingMark::of_tiles(&floor.geometry, &walked, rounds);
+        marks.drain(..marks.len() - marks.len() / rounds);
         self.listen(Listens::Floor);
         self.steps[SetupStep::Standing.index()] = StepView::default();
         self.work = Work::Standing(Box::new(StandingWork::new(&floor, marks, weight)));
@@ -154,17 +167,18 @@ impl SetupBench {
             self.work = Work::Readings;
             return self.fail(SetupStep::Standing, reason.to_owned());
         }
-        let is_same = |record: &&StandRecord| {
-            (record.weight.0 - weight.0).abs() < SAME_N && record.data.empty.len() == data.empty.len()
-        };
+        let is_same =
+            |record: &&StandRecord| record.is_of(weight) && record.data.empty.len() == data.empty.len();
+        let mut walks = 1;
         if let Some(earlier) = self.record.as_ref().filter(is_same) {
+            walks += earlier.walks;
             data.stands.splice(0..0, earlier.data.stands.iter().cloned());
             data.crossings.splice(0..0, earlier.data.crossings.iter().cloned());
             marks.splice(0..0, earlier.marks.iter().copied());
         }
         let job = FitJob { data: data.clone(), weight, geometry: floor.geometry };
         self.requests.push_back(SetupRequest::Fit(Box::new(job)));
-        let record = StandRecord { data, marks, weight, fit: None, needy: Vec::new() };
+        let record = StandRecord { data, marks, weight, walks, fit: None, needy: Vec::new() };
         self.work = Work::Fitting(Box::new(record));
     }
 }

@@ -58,7 +58,7 @@ pub(super) struct FloorDrawing<'a> {
 impl<'a> FloorDrawing<'a> {
     /// Draws the empty floor in the middle of `room`, north up.
     pub(super) fn new(ui: &Ui, room: Rect, geometry: &'a Geometry, theme: &'a Theme) -> Self {
-        let map = ScreenFromFloor::fit(geometry.bounds(), room.shrink2(vec2(26.0, 26.0)));
+        let map = ScreenFromFloor::fit(geometry.bounds(), room.shrink2(vec2(40.0, 40.0)));
         let painter = ui.painter_at(room);
         let area = map.rect(geometry.bounds());
         painter.rect_filled(area.expand(8.0), 10.0, color(theme.seam));
@@ -150,8 +150,8 @@ impl<'a> FloorDrawing<'a> {
         if self.geometry.tile_count() > MOST_WITH_SENSORS {
             return;
         }
-        // A tenth of a metre for a person on one sensor.
-        let greatest = 0.09 * self.map.scale();
+        // Six centimetres for a person on one sensor.
+        let greatest = 0.06 * self.map.scale();
         for view in sensors {
             let (tile, corner) = (view.sensor.tile, view.sensor.corner);
             if !self.geometry.has(tile) {
@@ -193,7 +193,8 @@ impl<'a> FloorDrawing<'a> {
             SensorState::Answers => _ = self.painter.circle_filled(at, radius, color(theme.good)),
             SensorState::Silent | SensorState::Unread | SensorState::Noisy | SensorState::Saturated => {
                 let square = Rect::from_center_size(at, vec2(2.2, 2.2) * radius);
-                self.painter.rect_filled(square, 1.5, color(theme.fault));
+                let ink = if state == SensorState::Saturated { theme.warning } else { theme.fault };
+                self.painter.rect_filled(square, 1.5, color(ink));
             }
         }
     }

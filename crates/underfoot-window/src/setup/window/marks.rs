@@ -73,7 +73,8 @@ impl FloorDrawing<'_> {
 /// around, and `side` is -1 for the left one.
 fn shoe(way: f32, side: f32) -> Vec2 {
     let (east, north) = (std::f32::consts::TAU * way).sin_cos();
-    // Wide at the ball and narrow at the heel.
-    let width = HEEL + (BALL - HEEL) * (0.5 + 0.5 * north);
-    Vec2::new(side * APART + east * width, 0.5 * LENGTH * north)
+    // Fuller than an ellipse at both ends, wide at the ball and narrow at the heel.
+    let full = |way: f32| way.abs().powf(0.8).copysign(way);
+    let width = HEEL + (BALL - HEEL) * (0.5 + 0.5 * full(north));
+    Vec2::new(side * APART + full(east) * width, 0.5 * LENGTH * full(north))
 }

@@ -74,8 +74,8 @@ pub(super) fn main_button(ui: &mut Ui, theme: &Theme, text: &str, is_on: bool) -
     if is_on {
         button = button.fill(color(theme.accent));
     }
-    let button = button.min_size(vec2(ui.available_width().min(330.0), 40.0));
-    let is_clicked = ui.add_enabled(is_on, button).clicked();
+    let size = vec2(ui.available_width().min(330.0), 40.0);
+    let is_clicked = ui.add_enabled_ui(is_on, |ui| ui.add_sized(size, button).clicked()).inner;
     let is_free = ui.memory(|memory| memory.focused().is_none());
     ui.add_space(4.0);
     is_clicked || (is_on && is_free && ui.input(|i| i.key_pressed(Key::Enter)))
@@ -112,7 +112,7 @@ pub(super) fn next_button(
         ui.add_space(6.0);
         side_button(
             ui,
-            &format!("Leave out: {}", lower(next.name())),
+            &format!("Skip to: {}", lower(next.name())),
             "Go on to the next step; this one can be done later",
         )
     };

@@ -7,7 +7,7 @@ use super::app::SetupApp;
 use super::board_cards::board_cards;
 use super::drawing::{FloorDrawing, TileLook};
 use crate::preview::style::write_within;
-use crate::setup::{SetupStep, SetupView, StandingView, WiringView, WorkView, mark_words};
+use crate::setup::{SetupStep, SetupView, StandingView, StepState, WiringView, WorkView, mark_words};
 use underfoot::floor::{Floor, TileId};
 use underfoot::layout::Colour;
 use underfoot::serve::{StandNews, StandTask, WiringTask};
@@ -62,6 +62,9 @@ impl SetupApp {
             (SetupStep::Standing, _) => plain("How heavy are you?"),
             (SetupStep::Readings, WorkView::Taring) => plain("Keep off the floor"),
             (SetupStep::Readings, _) if !view.is_rested => plain("Keep off the floor"),
+            (SetupStep::Readings, _) if view.step(SetupStep::Readings).state == StepState::Done => {
+                (theme.good, "Every sensor answers".to_owned())
+            }
             (SetupStep::Readings, _) => plain("Step on every corner"),
             (SetupStep::Layout, WorkView::Open) => (theme.good, "Step on a button".to_owned()),
             _ => plain(self.step.name()),
@@ -122,7 +125,12 @@ fn draw_work(ui: &Ui, room: Rect, theme: &Theme, view: &SetupView, floor: &Floor
     let drawing = FloorDrawing::new(ui, room, &floor.geometry, theme);
     match &view.work {
         WorkView::Wiring(walk) => {
-            drawing.tiles(ui, |tile| wiring_look(walk, tile));
+            let is_right = view.step(SetupStep::Wiring).state == StepState::Done;
+            drawing.tiles(ui, |tile| match wiring_look(walk, tile) {
+                // The floor file has the swapped boards exchanged now.
+                TileLook::Bad if is_right => TileLook::Good,
+                look => look,
+            });
             drawing.sensors(ui, &view.sensors);
         }
         WorkView::Standing(walk) => {

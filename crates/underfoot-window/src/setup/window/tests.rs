@@ -154,13 +154,24 @@ fn a_person_gets_from_boards_that_send_to_a_calibrated_floor() {
     room.type_weight("72");
     room.click("Start");
     room.stand();
+    assert!(room.says("stands and"), "{:?}", room.site.bench.view().steps);
+    let first = room.site.force_error();
+    assert!(first < 0.12, "{first}");
+    // A round of stands is not enough for every sensor; further ones are added to it.
+    for _ in 0..3 {
+        let needy = room.site.bench.view().needy.len();
+        if needy > 0 {
+            room.click(&if needy == 1 {
+                "Repeat the tile".to_owned()
+            } else {
+                format!("Repeat {needy} tiles")
+            });
+            room.stand();
+        }
+    }
     assert!(room.says("The floor is calibrated"), "{:?}", room.site.bench.view().steps);
-    assert!(room.says("stands and"));
     let error = room.site.force_error();
-    assert!(error < 0.1, "{error}");
-
-    let is_done = room.window.query_by_label("Next: press a button").is_some();
-    assert!(is_done, "{:?}", room.site.bench.view().steps);
+    assert!(error < 0.1, "{first} {error}");
     room.click("Next: press a button");
     room.click("Open the first layout");
     assert!(room.site.opened == 1 && room.says("is open on the floor"));

@@ -16,8 +16,8 @@ use underfoot::sense::StandFit;
 use underfoot::serve::{StandNews, StandTask, WiringTask};
 use underfoot_scene::scene::Theme;
 
-/// Maximum number of sensors that a list names.
-const LISTED: usize = 12;
+/// Maximum number of sensors or tiles that a list names.
+const LISTED: usize = 8;
 
 impl SetupApp {
     /// Which board reads which tiles.
