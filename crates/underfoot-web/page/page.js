@@ -5,7 +5,7 @@ import init, { join, open_recording, start, takes_layouts } from "./underfoot.js
 const cover = document.getElementById("cover");
 const state = document.getElementById("state");
 
-// A link that is opened in this page has another layout behind `#`. What is not saved stays as a draft.
+// A link that is opened in this page has another layout behind `#`. Unsaved changes stay as a draft.
 addEventListener("hashchange", () => location.reload());
 
 // Files and folders that are dropped on the page: the window gets all of them with their paths.
@@ -24,7 +24,7 @@ async function filesIn(entry, found) {
   }
 }
 
-// A recording larger than this does not fit into the memory of a page, whose answer names the limit.
+// A recording larger than this does not fit into the memory of a page; its answer names the limit.
 const MOST_BYTES = 2 ** 26;
 
 async function play(path, file) {
@@ -41,7 +41,7 @@ addEventListener("drop", async (event) => {
   const recording = mirror === null && found.length === 1 && found.find(([path]) => path.endsWith(".mcap"));
   if (recording) return play(...recording);
   if (mirror === null && !takes_layouts()) return;
-  // Of a folder, only what the window can open; a single file of another form gets its own message.
+  // Of a folder, only the files that the window can open; a single file of another form gets its own message.
   const texts = found.filter(([path]) => path.endsWith(".ron"));
   const detail = entries.every((entry) => entry.isFile) ? found : texts;
   dispatchEvent(new CustomEvent("underfoot-files", { detail }));
@@ -53,7 +53,7 @@ if (mirror === null && "serviceWorker" in navigator) {
   navigator.serviceWorker.register("offline.js").catch((error) => console.warn("no visits offline:", error));
 }
 
-// What the actuators do, as sound; from the first gesture on, as browsers ask.
+// The actuators' signals as sound, from the first gesture on, as browsers ask.
 const RATE = 48000;
 let speaker = null;
 
@@ -81,7 +81,7 @@ addEventListener("error", ({ error }) => {
   cover.hidden = false;
 });
 
-// What the window asks of the page.
+// Functions of the page for the window.
 const hooks = {
   sound: hasSound
     ? "Sound: all tiles in stereo, from the first click on."

@@ -1,4 +1,4 @@
-// Plays what the actuators do: left and right in turn, some milliseconds at a time.
+// Plays the signals of the actuators: left and right in turn, some milliseconds at a time.
 
 // Samples of both sides that wait before the sound begins, and at most: 40 ms against uneven frames, 250 ms after a stall.
 const BEGIN = 2 * 0.040;
