@@ -14,7 +14,7 @@ use underfoot_sim::{FloorBuild, FloorQuality, Pace, Scenario, SimulatedSource};
 use underfoot_web::floor::{NoFloor, shipped};
 use underfoot_web::played::Played;
 use underfoot_web::recording::RecordingReel;
-use underfoot_window::preview::{Playback, PlaybackOrder, PlaybackState, PreviewInput};
+use underfoot_window::preview::{PlaybackOrder, PlaybackState, PreviewInput};
 
 /// The built-in session on an ideal floor, recorded.
 static SESSION: LazyLock<Vec<u8>> = LazyLock::new(|| {
