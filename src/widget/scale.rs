@@ -113,7 +113,7 @@ impl Scale {
         if value.is_nan() {
             return self.min;
         }
-        let value = value.clamp(self.min, self.max);
+        let value = value.clamp(self.min, self.max.max(self.min));
         if self.step > 0.0 { nearest(value, self.min, self.step).min(self.max) } else { value }
     }
 
@@ -132,7 +132,7 @@ impl Scale {
         if wanted.is_nan() {
             return None;
         }
-        let wanted = wanted.clamp(self.min, self.max);
+        let wanted = wanted.clamp(self.min, self.max.max(self.min));
         let at_an_end = wanted == self.min || wanted == self.max;
         let next = if self.step > 0.0 {
             let held = (wanted - current).abs() < (0.5 + HYSTERESIS) * self.step;

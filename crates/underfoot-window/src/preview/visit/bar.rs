@@ -258,9 +258,10 @@ impl VisitBar {
     }
 }
 
-/// Length and size: `0:12 · 3.1 MB`.
+/// Length and size: `0:12 · 3.1 MB`, or `0:12 · 2.4 kB` for a little.
 fn written(size: &VisitSize) -> String {
-    format!("{} · {:.1} MB", length(size), size.bytes as f64 * 1e-6)
+    let (unit, per_unit) = if size.bytes < 100_000 { ("kB", 1e-3) } else { ("MB", 1e-6) };
+    format!("{} · {:.1} {unit}", length(size), size.bytes as f64 * per_unit)
 }
 
 /// Minutes and seconds: `0:12`.
