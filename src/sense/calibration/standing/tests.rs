@@ -271,6 +271,16 @@ fn a_stand_elsewhere_is_named_and_does_not_count() {
 }
 
 #[test]
+fn one_round_of_stands_gives_every_sensor_a_law() {
+    for kind in [LawKind::Exponential, LawKind::Power] {
+        let mut plates = Plates::new(kind, 2, 2, 5);
+        let data = plates.stand(0.01, Vec2::ZERO);
+        let fit = fitted(&plates, &data);
+        assert!(fit.sensors.iter().all(|sensor| sensor.determined > 0), "{:?}", fit.sensors);
+    }
+}
+
+#[test]
 fn sensors_under_which_nobody_stood_need_more_and_others_do_not() {
     let mut plates = Plates::new(LawKind::Linear, 3, 1, 2);
     let mut data = plates.stand(0.003, Vec2::ZERO);
