@@ -61,7 +61,7 @@ impl Served {
         Greeting::line(&self.floor, layout, &seen, Method::default(), self.takes_layouts)
     }
 
-    /// Runs for 16 ms with a foot whose ball presses at `at`; returns the frames.
+    /// Runs for 16 ms with the ball of a foot pressing at `at`; returns the frames.
     fn run(&mut self, at: Vec2, force: f32) -> Vec<Vec<u8>> {
         let foot = |position| PreviewFoot {
             position,

@@ -25,7 +25,7 @@ fn cases() -> ProptestConfig {
     ProptestConfig::with_cases(asked.unwrap_or(150))
 }
 
-/// A change of a text: where, how much is cut, and what comes in its place.
+/// A change of a text: where, how much is cut, and the text in its place.
 type Change = (Index, usize, String);
 
 fn change() -> impl Strategy<Value = Change> {

@@ -16,7 +16,7 @@ use underfoot_window::preview::{
     EventNews, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, Warnings,
 };
 
-/// A page whose frames the test calls.
+/// A page; the test calls its frames.
 struct Page {
     floor: PageFloor,
     input: PreviewInput,
@@ -32,7 +32,7 @@ impl Page {
         Self { floor, input, now: Duration::ZERO }
     }
 
-    /// Runs for `ms` milliseconds with one foot whose ball is at `at`, pressing with `force` newtons.
+    /// Runs for `ms` milliseconds with the ball of one foot at `at`, pressing with `force` newtons.
     fn stand(&mut self, at: Vec2, force: f32, ms: u64) {
         let foot = |position| PreviewFoot {
             position,

@@ -39,7 +39,7 @@ fn state(input: &mut PreviewInput) -> PlaybackState {
     input.playback.as_mut().unwrap().state()
 }
 
-/// Runs frames until `what` holds.
+/// Runs frames until the condition holds.
 fn until(
     played: &mut Played,
     input: &mut PreviewInput,

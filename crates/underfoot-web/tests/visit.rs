@@ -61,7 +61,7 @@ fn simulated(shared: &SharedLayout) -> Vec<String> {
     Arc::into_inner(lines.0).unwrap().into_inner().unwrap()
 }
 
-/// A page with a visit, whose frames the test calls.
+/// A page with a visit; the test calls its frames.
 struct Page {
     visit: Played,
     input: PreviewInput,
@@ -85,7 +85,7 @@ impl Page {
         self.visit.run_until(self.now, &|| Duration::ZERO);
     }
 
-    /// Runs frames until `what` holds.
+    /// Runs frames until the condition holds.
     fn until(&mut self, what: impl Fn(&PlaybackState) -> bool) -> PlaybackState {
         for _ in 0..10_000 {
             self.frame();
