@@ -104,7 +104,7 @@ fn with_visit() -> String {
 proptest! {
     #![proptest_config(cases())]
 
-    /// A layout whose text is changed in some places, in a link that is sound.
+    /// A layout with a text that is changed in some places, in a link that is sound.
     #[test]
     fn layouts_that_are_damaged_open_or_say_why(which in any::<Index>(), changes in proptest::collection::vec(change(), 1..4)) {
         let names: Vec<&str> = builtin_layouts().collect();

@@ -81,7 +81,7 @@ impl Page {
 
     fn frame(&mut self) {
         self.now += FRAME;
-        // A machine whose frames never end early.
+        // On this machine, no frame ends early.
         self.visit.run_until(self.now, &|| Duration::ZERO);
     }
 
@@ -158,7 +158,7 @@ fn a_machine_that_is_slow_is_late_and_still_answers() {
     assert_eq!((state.goes_to_s, state.at_s), (Some(10.0), 0.0));
 }
 
-/// A foot of the window whose ball is at `at`.
+/// A foot of the window, with its ball at `at`.
 fn foot(at: Vec2, force: f32) -> PreviewFoot {
     PreviewFoot {
         position: at,
