@@ -32,6 +32,7 @@ pub(super) trait Canvas: Send + Sync + 'static {
 
 /// The picture on a canvas when a frame begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "the canvas of a page keeps its picture"))]
 pub(super) enum CanvasState {
     /// It is that of the frame before.
     Kept,
