@@ -35,10 +35,13 @@ fn the_visit_of_a_link_presses_what_the_scenario_presses_within_some_millisecond
     };
     assert!(words(&lived).contains(&"pressed home".to_owned()), "{lived:?}");
     assert_eq!(words(&linked), words(&lived));
-    for ((one_s, event, id), (other_s, ..)) in
-        linked.iter().zip(&lived).filter(|((_, event, _), _)| event == "pressed")
-    {
-        assert!((one_s - other_s).abs() < 0.03, "{event} {id}: {one_s} {other_s}");
+    // A slider changes a little more or less often: the feet of a link are rounded.
+    let presses = |events: &[(f64, String, String)]| -> Vec<(f64, String)> {
+        let presses = events.iter().filter(|(_, event, _)| event == "pressed");
+        presses.map(|(at_s, _, id)| (*at_s, id.clone())).collect()
+    };
+    for ((one_s, id), (other_s, _)) in presses(&linked).into_iter().zip(presses(&lived)) {
+        assert!((one_s - other_s).abs() < 0.03, "{id}: {one_s} {other_s}");
     }
     assert_eq!(printed(&["session", link, "--json"]), printed(&["session", link, "--json"]), "to the letter");
 }
