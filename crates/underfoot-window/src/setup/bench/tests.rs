@@ -135,7 +135,8 @@ fn a_floor_on_which_somebody_walks_is_not_measured_as_empty_and_the_reason_is_sa
     assert_eq!(walk.task, StandTask::KeepOff);
     assert!(walk.trouble.as_ref().is_some_and(|reason| reason.contains("something moves")), "{walk:?}");
     assert!(!view.is_rested);
-    site.hold(2500, None);
+    // The block of a second and a half in which the last foot leaves, and a quiet one.
+    site.hold(4000, None);
     let view = site.bench.view();
     assert!(
         matches!(&view.work, WorkView::Standing(walk) if walk.trouble.is_none()) && view.is_rested,
