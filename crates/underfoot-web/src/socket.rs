@@ -18,8 +18,10 @@ pub(crate) enum SocketNews {
 /// A WebSocket, which passes on its news until it is closed or dropped.
 pub(crate) struct PageSocket {
     socket: WebSocket,
-    /// Called for each message and at the end, for as long as this exists.
-    _calls: (Closure<dyn Fn(MessageEvent)>, Closure<dyn Fn(CloseEvent)>),
+    /// Called for each message, for as long as this exists.
+    _heard: Closure<dyn Fn(MessageEvent)>,
+    /// Called at the end.
+    _closed: Closure<dyn Fn(CloseEvent)>,
 }
 
 impl PageSocket {
@@ -39,7 +41,7 @@ impl PageSocket {
         let closed = Closure::<dyn Fn(CloseEvent)>::new(move |_| tell(SocketNews::Closed));
         socket.set_onmessage(Some(heard.as_ref().unchecked_ref()));
         socket.set_onclose(Some(closed.as_ref().unchecked_ref()));
-        Ok(Self { socket, _calls: (heard, closed) })
+        Ok(Self { socket, _heard: heard, _closed: closed })
     }
 
     /// Sends a text; false if the connection does not stand.

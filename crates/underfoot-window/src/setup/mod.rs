@@ -14,7 +14,7 @@
 //! | `first_layout` | a button on each tile |
 //! | `standing` | marks in words; the laws that a person's stands give, in the floor |
 //! | `bench` | the steps at work: packets and orders in, a view and requests out; without threads, files and clocks |
-//! | `window` | the window (feature `window`) |
+//! | `window` | the window (feature `window`; no browser has boards) |
 //!
 //! The set-up at the terminal shares all but the last two.
 
@@ -28,7 +28,7 @@ mod site;
 mod standing;
 mod step;
 mod view;
-#[cfg(feature = "window")]
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 mod window;
 mod wires;
 

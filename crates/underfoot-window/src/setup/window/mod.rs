@@ -17,6 +17,4 @@ mod steps_bar;
 mod tests;
 mod walk_pages;
 
-#[cfg(not(target_arch = "wasm32"))]
-pub use run::run;
-pub use run::{SetupChannels, SetupOptions};
+pub use run::{SetupChannels, SetupOptions, run};

@@ -30,7 +30,6 @@ pub struct SetupOptions {
 ///
 /// # Errors
 /// [`PreviewError::NoWindow`](crate::preview::PreviewError) if there is no display or no OpenGL on it.
-#[cfg(not(target_arch = "wasm32"))]
 pub fn run(channels: SetupChannels, options: &SetupOptions) -> Result<(), crate::preview::PreviewError> {
     use super::app::SetupApp;
     use crate::preview::{desktop, screen_report, style};
