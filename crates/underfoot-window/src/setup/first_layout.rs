@@ -2,7 +2,7 @@
 
 use underfoot::floor::Geometry;
 
-/// Returns the text of a first layout: a button on each tile.
+/// Returns the text of a first layout: a button on each tile, for the foot that works beside a standing one.
 #[must_use]
 pub fn first_layout(geometry: &Geometry) -> String {
     let widgets: String = geometry
@@ -11,13 +11,14 @@ pub fn first_layout(geometry: &Geometry) -> String {
         .map(|tile| {
             let (column, row) = (tile.column, tile.row);
             format!(
-                "        (id: \"tile_{column}_{row}\", kind: \"button\", at: ({column}.1, {row}.1), size: (0.8, 0.8)),\n"
+                "        (id: \"tile_{column}_{row}\", kind: \"button\", label: \"{column}, {row}\", at: ({column}.1, \
+                 {row}.1), size: (0.8, 0.8)),\n"
             )
         })
         .collect();
     format!(
         "// A button on each tile: a first layout, to try the floor.\nLayout(\n    version: 1,\n    regions: [(id: \
-         \"all\", at: (0, 0), size: ({}, {}))],\n    widgets: [\n{widgets}    ],\n)\n",
+         \"all\", at: (0, 0), size: ({}, {}), cursor: Working)],\n    widgets: [\n{widgets}    ],\n)\n",
         geometry.columns(),
         geometry.rows()
     )
