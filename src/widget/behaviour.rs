@@ -109,7 +109,7 @@ impl Behaviour {
             && least < greatest
             && scale.step <= greatest - least;
         (scale.min, scale.max) = (least, greatest);
-        *initial = initial.clamp(least, greatest.max(least));
+        *initial = scale.limited(*initial);
         fits.then_some(other)
     }
 

@@ -55,7 +55,7 @@ impl ControlNumber {
     /// Moves by `way`; keeps the rest between two steps for later, drops the part beyond an end.
     pub(super) fn move_by(&mut self, way: f32, emitted: &mut Emitted) {
         if way.is_finite() {
-            self.raw = (self.raw + way).clamp(self.scale.min, self.scale.max.max(self.scale.min));
+            self.raw = self.scale.limited(self.raw + way);
             self.follow(self.raw, super::scale::QUANTUM, emitted);
         }
     }

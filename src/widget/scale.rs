@@ -107,13 +107,18 @@ impl Scale {
         self.min + self.range() * share
     }
 
+    /// `value` limited to the range; `min` for a range without values, whose problem the reader of the layout reports.
+    pub(super) fn limited(&self, value: f32) -> f32 {
+        value.min(self.max).max(self.min)
+    }
+
     /// The nearest allowed value; `min` for NaN.
     #[must_use]
     pub fn settle(&self, value: f32) -> f32 {
         if value.is_nan() {
             return self.min;
         }
-        let value = value.clamp(self.min, self.max.max(self.min));
+        let value = self.limited(value);
         if self.step > 0.0 { nearest(value, self.min, self.step).min(self.max) } else { value }
     }
 
@@ -132,7 +137,7 @@ impl Scale {
         if wanted.is_nan() {
             return None;
         }
-        let wanted = wanted.clamp(self.min, self.max.max(self.min));
+        let wanted = self.limited(wanted);
         let at_an_end = wanted == self.min || wanted == self.max;
         let next = if self.step > 0.0 {
             let held = (wanted - current).abs() < (0.5 + HYSTERESIS) * self.step;

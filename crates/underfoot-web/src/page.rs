@@ -181,17 +181,20 @@ fn opened(
     page: &OpenPage,
 ) -> Result<(PageStage, PreviewInput), String> {
     let stage = |shared: &SharedLayout| {
-        let (heard, address, page) = (heard.clone(), address.to_owned(), page.clone());
+        let (heard, address, own_page) = (heard.clone(), address.to_owned(), page.clone());
         let play = move |samples: &[f32]| heard.add(samples);
         let dress = move |floor: &PageFloor, input: &mut PreviewInput| {
             let (address, own) = (address.clone(), floor.own_texts());
             input.share = Some(Box::new(PageLinks { address, geometry: input.floor.geometry, own }));
-            page.follow(input);
+            own_page.follow(input);
         };
         let opened = if shared.visit.is_some() {
             VisitReel::new(shared, play, Box::new(dress))
                 .and_then(|reel| Played::new(Box::new(reel), "a visit"))
-                .map(|(played, input)| (PageStage::Played(Box::new(played)), input))
+                .map(|(played, mut input)| {
+                    page.follow(&mut input);
+                    (PageStage::Played(Box::new(played)), input)
+                })
         } else {
             PageFloor::new(shared, play).map(|(floor, mut input)| {
                 dress(&floor, &mut input);
@@ -199,11 +202,6 @@ fn opened(
             })
         };
         opened.map_err(|error| error.to_string())
-    };
-    let stage = |shared: &SharedLayout| {
-        let (stage, mut input) = stage(shared)?;
-        page.follow(&mut input);
-        Ok::<_, String>((stage, input))
     };
     let first = || stage(&shipped(FIRST));
     if fragment.len() < 2 {

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use underfoot::recording::{MarkKind, Recording, RecordingError, Timeline, TimelineMark};
+use underfoot::recording::{Recording, RecordingError, Timeline};
 use underfoot::units::Instant;
 use underfoot_sim::TakeOver;
-use underfoot_window::preview::{MarkWeight, PlaybackMark, PreviewInput};
+use underfoot_window::preview::{PlaybackMark, PreviewInput};
 
 use super::floor::{NoFloor, PageFloor};
 use super::played::Reel;
@@ -45,7 +45,7 @@ impl RecordingReel {
         let begins = recording.begins().unwrap_or(Instant::START);
         let first = whole.span.map_or(begins, |(first, _)| first.max(begins));
         reel.length = whole.span.map_or(Duration::ZERO, |(_, last)| last.since(first));
-        reel.marks = whole.marks.iter().map(|mark| told(mark, first)).collect();
+        reel.marks = whole.marks.iter().map(|mark| PlaybackMark::of_recording(mark, first)).collect();
         reel.broken = whole.broken;
         Ok(reel)
     }
@@ -53,15 +53,6 @@ impl RecordingReel {
     fn open(&self) -> Result<Recording, RecordingError> {
         Recording::read(Box::new(Cursor::new(Arc::clone(&self.bytes))), &self.name)
     }
-}
-
-fn told(mark: &TimelineMark, first: Instant) -> PlaybackMark {
-    let (what, weight) = match &mark.kind {
-        MarkKind::Pressed(id) => (format!("{id} pressed"), MarkWeight::Usual),
-        MarkKind::Cancelled(id) => (format!("{id} cancelled"), MarkWeight::Odd),
-        MarkKind::LinkLost => ("link lost".into(), MarkWeight::Fault),
-    };
-    PlaybackMark { at_s: mark.at.since(first).as_secs_f64(), what, weight }
 }
 
 impl Reel for RecordingReel {

@@ -10,13 +10,13 @@ use std::time::Duration;
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::recording::{MarkKind, Progress, Recording, Speed, Timeline, TimelineMark, Transport};
+use underfoot::recording::{Progress, Recording, Speed, Timeline, Transport};
 use underfoot::runtime::Session;
 use underfoot::sink::Since;
 use underfoot::units::Instant;
 use underfoot_window::preview::{
-    EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState,
-    ProgramChannels, ToWindow, announced,
+    EventNews, LayoutCause, Playback, PlaybackMark, PlaybackOrder, PlaybackState, ProgramChannels, ToWindow,
+    announced,
 };
 
 use super::super::failure::Failure;
@@ -103,7 +103,7 @@ fn read_marks(path: &Path, first: Instant, shown: Arc<Shown>) -> Result<(), Fail
         let mut state = shown.state();
         state.length_s = timeline.span.map_or(0.0, |(_, last)| last.since(first).as_secs_f64());
         let marks = &timeline.marks[state.marks.len().min(timeline.marks.len())..];
-        let told = marks.iter().map(|mark| told(mark, first));
+        let told = marks.iter().map(|mark| PlaybackMark::of_recording(mark, first));
         Arc::make_mut(&mut state.marks).extend(told);
         state.broken.clone_from(&timeline.broken);
         !shown.is_over.load(Ordering::Relaxed)
@@ -113,15 +113,6 @@ fn read_marks(path: &Path, first: Instant, shown: Arc<Shown>) -> Result<(), Fail
         .spawn(move || recording.read_timeline(tell))
         .map(drop)
         .map_err(|error| Failure::Other(error.to_string()))
-}
-
-fn told(mark: &TimelineMark, first: Instant) -> PlaybackMark {
-    let (what, weight) = match &mark.kind {
-        MarkKind::Pressed(id) => (format!("{id} pressed"), MarkWeight::Usual),
-        MarkKind::Cancelled(id) => (format!("{id} cancelled"), MarkWeight::Odd),
-        MarkKind::LinkLost => ("link lost".into(), MarkWeight::Fault),
-    };
-    PlaybackMark { at_s: mark.at.since(first).as_secs_f64(), what, weight }
 }
 
 /// One pass through the recording, from its first moment.

@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use underfoot::recording::{MarkKind, TimelineMark};
+use underfoot::units::Instant;
+
 use super::feed::PreviewInput;
 
 /// A recording that plays through the sensing. Times are seconds since its first moment.
@@ -67,6 +70,19 @@ pub struct PlaybackMark {
     pub what: String,
     /// Its importance.
     pub weight: MarkWeight,
+}
+
+impl PlaybackMark {
+    /// The mark of a recording whose first moment is `first`; marks before it are at its beginning.
+    #[must_use]
+    pub fn of_recording(mark: &TimelineMark, first: Instant) -> Self {
+        let (what, weight) = match &mark.kind {
+            MarkKind::Pressed(id) => (format!("{id} pressed"), MarkWeight::Usual),
+            MarkKind::Cancelled(id) => (format!("{id} cancelled"), MarkWeight::Odd),
+            MarkKind::LinkLost => ("link lost".into(), MarkWeight::Fault),
+        };
+        Self { at_s: mark.at.since(first).as_secs_f64(), what, weight }
+    }
 }
 
 /// The importance of a mark.
