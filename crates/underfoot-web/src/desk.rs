@@ -14,8 +14,8 @@ use underfoot_sim::FeetTape;
 use underfoot_window::edit::{self, Document};
 use underfoot_window::preview::{LayoutCause, LayoutNews, Notice, PreviewCommand, Warnings};
 
-use super::floor::FIRST;
 use super::kinds::OwnTexts;
+use super::plan::FIRST;
 
 /// Carries out the commands of the window, on the thread of the page: nothing here may wait.
 pub(crate) struct PageDesk {

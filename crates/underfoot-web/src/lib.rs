@@ -4,6 +4,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`floor`] | the simulated floor, advanced in the frames of the page |
+//! | [`plan`] | the layout and the measured floor from which that floor begins, or why there is none |
 //! | [`clock`] | the time of that floor |
 //! | [`joined`] | the floor of a server, sensed again in the page |
 //! | [`desk`] | layouts put on the floor, and the commands of the window |
@@ -29,6 +30,7 @@ mod lag;
 mod lines;
 #[cfg(target_arch = "wasm32")]
 pub mod page;
+pub mod plan;
 pub mod played;
 pub mod recording;
 #[cfg(target_arch = "wasm32")]

@@ -16,8 +16,9 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue};
 use web_sys::{CustomEvent, CustomEventInit, HtmlCanvasElement, Window};
 
-use super::floor::{FIRST, PageFloor, shipped};
+use super::floor::PageFloor;
 use super::kinds::OwnTexts;
+use super::plan::{FIRST, shipped};
 use super::played::Played;
 use super::recording::RecordingReel;
 use super::sound::FrameSound;

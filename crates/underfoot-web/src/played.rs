@@ -17,7 +17,8 @@ use underfoot_window::preview::{
     ProgramChannels, channels,
 };
 
-use super::floor::{NoFloor, PageFloor};
+use super::floor::PageFloor;
+use super::plan::NoFloor;
 
 /// Maximum time of the machine that one frame of the page spends on the floor.
 const BUDGET: Duration = Duration::from_millis(12);

@@ -10,7 +10,8 @@ use underfoot::units::Instant;
 use underfoot_sim::TakeOver;
 use underfoot_window::preview::{PlaybackMark, PreviewInput};
 
-use super::floor::{NoFloor, PageFloor};
+use super::floor::PageFloor;
+use super::plan::NoFloor;
 use super::played::Reel;
 
 /// Maximum size of a recording in a page, in megabytes: half an hour of the usual floor.

@@ -9,7 +9,8 @@ use underfoot_sim::{RecordedFeet, TakeOver};
 use underfoot_window::link::SharedLayout;
 use underfoot_window::preview::PreviewInput;
 
-use super::floor::{FloorPlan, NoFloor, PageFloor};
+use super::floor::PageFloor;
+use super::plan::{FloorPlan, NoFloor};
 use super::played::Reel;
 
 /// Prepares the input of a live window: its links, for example.

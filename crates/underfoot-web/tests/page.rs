@@ -9,7 +9,8 @@ use underfoot::engine::Snapshot;
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::units::Newtons;
-use underfoot_web::floor::{PageFloor, RATE, shipped};
+use underfoot_web::floor::{PageFloor, RATE};
+use underfoot_web::plan::shipped;
 use underfoot_web::sound::FrameSound;
 use underfoot_window::link::SharedLayout;
 use underfoot_window::preview::{

@@ -11,7 +11,7 @@ use underfoot::schema::{Kinds, parse_layout};
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
 use underfoot_sim::{FloorBuild, FloorQuality, Pace, Scenario, SimulatedSource};
-use underfoot_web::floor::{NoFloor, shipped};
+use underfoot_web::plan::{NoFloor, shipped};
 use underfoot_web::played::Played;
 use underfoot_web::recording::RecordingReel;
 use underfoot_window::preview::{PlaybackOrder, PlaybackState, PreviewInput};
