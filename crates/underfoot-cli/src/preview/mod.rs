@@ -7,6 +7,7 @@ mod layers;
 mod links;
 mod played;
 mod player;
+mod set_up;
 mod visits;
 
 use std::net::SocketAddr;
@@ -438,7 +439,8 @@ impl Args {
         };
         let settings = Some(preview::usual_state().join("window"));
         let usual = PreviewOptions::default();
-        PreviewOptions { projection, settings, layers: self.layers.unwrap_or(usual.layers), ..usual }
+        let layers = self.layers.unwrap_or(usual.layers);
+        PreviewOptions { projection, settings, layers, set_up: Some(set_up::open), ..usual }
     }
 
     /// The address for the packets of a real floor; `None` for a simulated one.

@@ -77,7 +77,7 @@ pub(super) struct WindowState {
     /// Whether the last frame showed Design mode.
     was_designing: bool,
     /// The options with which the window began.
-    options: PreviewOptions,
+    pub(super) options: PreviewOptions,
     next_floor: Option<NextFloor>,
 }
 

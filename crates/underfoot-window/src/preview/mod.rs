@@ -92,8 +92,12 @@ use thiserror::Error;
 
 use underfoot_scene::scene::{Show, Theme};
 
+/// Opens the set-up of a real floor, and returns the message for the user; called by the window's thread, so it must not
+/// wait.
+pub type OpenSetUp = fn() -> String;
+
 /// The initial state of the window.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct PreviewOptions {
     /// The text of the window's title bar.
     pub title: String,
@@ -109,6 +113,8 @@ pub struct PreviewOptions {
     pub projection: ProjectionOptions,
     /// Whether the window begins with the gallery of layouts.
     pub begins_with_gallery: bool,
+    /// The set-up of a real floor, in the menu *Help*; `None` where there is none, as in a browser.
+    pub set_up: Option<OpenSetUp>,
 }
 
 impl Default for PreviewOptions {
@@ -121,6 +127,7 @@ impl Default for PreviewOptions {
             layers: Show::WINDOW,
             projection: ProjectionOptions::default(),
             begins_with_gallery: false,
+            set_up: None,
         }
     }
 }

@@ -3,6 +3,7 @@
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{Color32, FontId, Grid, Margin, Panel, PopupCloseBehavior, RichText, Ui};
 
+use crate::preview::OpenSetUp;
 use crate::preview::appearance::Appearance;
 use crate::preview::icons::{Icon, named, short};
 use crate::preview::messages::WindowMessages;
@@ -123,13 +124,15 @@ pub(in crate::preview) fn help_bar(ui: &mut Ui, theme: &Theme, activity: HelpTop
     });
 }
 
-/// A menu with all keys and gestures of the present mode, and a switch for the first steps on the floor.
+/// A menu with all keys and gestures of the present mode, a switch for the first steps on the floor, and the set-up of a
+/// real floor if there is one.
 pub(super) fn help_menu(
     ui: &mut Ui,
     theme: &Theme,
     activity: HelpTopic,
     is_compact: bool,
     appearance: &mut Appearance,
+    set_up: Option<OpenSetUp>,
     messages: &mut WindowMessages,
 ) {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -147,6 +150,16 @@ pub(super) fn help_menu(
             let mut has_steps = appearance.has_steps();
             if ui.checkbox(&mut has_steps, "First steps on the floor").changed() {
                 appearance.show_steps(ui.ctx(), has_steps, messages);
+            }
+            if let Some(open) = set_up {
+                let button = ui.button("Set up a real floor");
+                if button
+                    .on_hover_text("Finds boards, wiring and calibration, in a window of its own")
+                    .clicked()
+                {
+                    messages.note(open());
+                    ui.close();
+                }
             }
         });
     named(button, "Help");

@@ -183,7 +183,8 @@ impl App {
         mutes(ui, theme, &self.shown, self.rehearsal.as_ref());
         self.appearance.menu(ui, is_compact, &mut self.shown.messages);
         let activity = self.activity();
-        help_menu(ui, theme, activity, is_compact, &mut self.appearance, &mut self.shown.messages);
+        let set_up = self.window.options.set_up;
+        help_menu(ui, theme, activity, is_compact, &mut self.appearance, set_up, &mut self.shown.messages);
         link_state(ui, theme, &self.shown, self.time_line.is_some());
         let width = ui.min_rect().right() - left;
         if (width - self.top_bar.end_width).abs() > 0.5 {

@@ -59,6 +59,21 @@ fn help_brings_the_first_steps_back_and_lists_the_keys_of_the_mode() {
 }
 
 #[test]
+fn help_offers_the_set_up_only_where_there_is_one() {
+    let mut room = Room::simulated();
+    room.window.get_by_label("Help").click();
+    room.run(3);
+    assert!(room.window.query_by_label("Set up a real floor").is_none(), "as in a browser");
+
+    room.window.state_mut().window.options.set_up = Some(|| "The set-up opens.".into());
+    room.run(3);
+    room.window.get_by_label("Set up a real floor").click();
+    room.run(3);
+    assert!(room.says("The set-up opens."), "the message of the program");
+    assert!(room.window.query_by_label("Set up a real floor").is_none(), "the menu is closed");
+}
+
+#[test]
 fn the_steps_cover_no_control_and_appear_only_where_mouse_and_keys_are_feet() {
     for (width, height) in [(1280.0, 800.0), (640.0, 800.0)] {
         let mut room = Room::of(true, width, height);
