@@ -224,10 +224,15 @@ impl App {
         let stack = MessageStack { theme, canvas };
         let lists_warnings = self.top_bar.lists_warnings && !self.is_designing();
         stack.lower(ui, &self.shown.messages, lists_warnings);
-        let designer = &mut self.designer;
+        let designs = self.is_designing();
+        let (designer, view) = (&mut self.designer, &mut self.view);
         stack.upper(ui, &mut self.shown, |ui| {
             if let Some(designer) = designer {
                 designer.messages(ui, &stack);
+            }
+            // Below the messages, so that none covers it.
+            if !designs {
+                view.fit_button(ui);
             }
         });
     }

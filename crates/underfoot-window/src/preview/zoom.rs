@@ -55,10 +55,9 @@ impl Zoom {
         Self { by, off: (room.stage.center() - room.free.center()) / by }
     }
 
-    /// Whether the view is that of the whole floor in the free area.
-    pub(super) fn is_fitted(&self, bounds: floor::Rect, room: ViewRoom) -> bool {
-        let fitted = Self::fitted(bounds, room);
-        (self.by - fitted.by).abs() < 1e-3 && (self.off - fitted.off).length() < 0.5
+    /// Whether both show the same, to half a point.
+    pub(super) fn is_close_to(&self, other: Self) -> bool {
+        (self.by - other.by).abs() < 1e-3 && (self.off - other.off).length() < 0.5
     }
 
     /// The transform from floor to screen; `bounds` is the area at zoom 1.
@@ -122,7 +121,7 @@ mod tests {
         let pointer = pos2(420.0, 300.0);
         let under = zoom.map(bounds, screen).floor(pointer);
         zoom.about(pointer, 3.0, bounds, room);
-        assert!(!zoom.is_fitted(bounds, room));
+        assert!(!zoom.is_close_to(Zoom::fitted(bounds, room)));
         assert!(zoom.map(bounds, screen).floor(pointer).distance(under) < 1e-3);
         zoom.pan(vec2(1e6, -1e6), room);
         let shown = zoom.map(bounds, screen).rect(bounds);
@@ -140,13 +139,15 @@ mod tests {
         let (bounds, mut room) = (bounds(), uncovered());
         room.free.max.x -= 300.0;
         let mut zoom = Zoom::default();
-        assert!(!zoom.is_fitted(bounds, room));
+        assert!(!zoom.is_close_to(Zoom::fitted(bounds, room)));
         let shown = |zoom: &Zoom| zoom.map(bounds, room.stage).rect(bounds);
         zoom.pan(vec2(-1e4, 1e4), room);
         let corner = shown(&zoom).right_bottom();
         assert!(room.free.expand(0.1).contains(corner), "{corner} in {}", room.free);
         zoom = Zoom::fitted(bounds, room);
-        assert!(room.free.expand(0.1).contains_rect(shown(&zoom)) && zoom.is_fitted(bounds, room));
+        assert!(
+            room.free.expand(0.1).contains_rect(shown(&zoom)) && zoom.is_close_to(Zoom::fitted(bounds, room))
+        );
         // Without the cover, the fitted view is the usual one.
         assert_eq!(Zoom::fitted(bounds, uncovered()), Zoom::default());
     }

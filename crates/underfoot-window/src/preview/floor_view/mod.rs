@@ -32,6 +32,8 @@ use underfoot_scene::scene::{self, Scene, Shoe, Show, Theme, View};
 /// The view of the floor.
 pub(super) struct FloorPane {
     pub(super) zoom: Zoom,
+    /// The zoom at which the whole floor fills the part of the window that panels leave free.
+    whole: Zoom,
     /// The controls on the screen, in their order for the keyboard.
     controls: Vec<Id>,
     scene: Scene,
@@ -60,6 +62,7 @@ impl FloorPane {
     pub(super) fn new(show: Show) -> Self {
         Self {
             zoom: Zoom::default(),
+            whole: Zoom::default(),
             controls: Vec::new(),
             scene: Scene::new(),
             palette: Palette::default(),
@@ -110,9 +113,7 @@ impl FloorPane {
             let written = self.scene.written().map(|area| map.rect(area));
             self.steps.show(ui, rect, map, theme, shown, written);
         }
-        if !self.zoom.is_fitted(extent, room) {
-            self.fit_button(ui, rect, extent, room);
-        }
+        self.whole = Zoom::fitted(extent, room);
         feet.draw_handle(ui, rect, theme);
         if feet.are_led() && canvas.contains_pointer() {
             ui.ctx().set_cursor_icon(if on_handle { CursorIcon::Grab } else { CursorIcon::Crosshair });
@@ -168,12 +169,15 @@ impl FloorPane {
         }
     }
 
-    /// A button that shows the whole floor in the part of the window that panels leave free.
-    fn fit_button(&mut self, ui: &mut Ui, rect: Rect, extent: floor::Rect, room: ViewRoom) {
-        let area = Rect::from_min_size(rect.left_top() + vec2(10.0, 10.0), vec2(84.0, 26.0));
-        let button = ui.put(area, egui::Button::new(format!("{:.0} % · fit", 100.0 * self.zoom.by())));
-        if button.on_hover_text("Show the whole floor").clicked() {
-            self.zoom = Zoom::fitted(extent, room);
+    /// A button that shows the whole floor in the part of the window that panels leave free, unless it is on display.
+    pub(super) fn fit_button(&mut self, ui: &mut Ui) {
+        if self.zoom.is_close_to(self.whole) {
+            return;
+        }
+        let button =
+            egui::Button::new(format!("{:.0} % · fit", 100.0 * self.zoom.by())).min_size(vec2(84.0, 26.0));
+        if ui.add(button).on_hover_text("Show the whole floor").clicked() {
+            self.zoom = self.whole;
         }
     }
 }

@@ -96,7 +96,6 @@ fn the_floor_keeps_at_least_half_of_a_narrow_window_whatever_is_open() {
 }
 
 #[test]
-#[ignore = "not finished: after a fit beside open plots the floor is not smaller, or a control is out of view"]
 fn what_a_panel_covers_can_be_fitted_into_view_and_back() {
     let mut room = room(1280.0, 800.0);
     let before = home(&room);
