@@ -8,9 +8,9 @@ import puppeteer from "puppeteer-core";
 
 const TYPES = { html: "text/html", js: "text/javascript", css: "text/css", wasm: "application/wasm" };
 
-/// Static files, as any host serves them.
-export function serve(folder) {
-  const server = http.createServer((request, response) => {
+/// The answers of a host of static files to requests for those of `folder`.
+export function answerFrom(folder) {
+  return (request, response) => {
     const name = new URL(request.url, "http://x").pathname.replace(/\/$/, "/index.html");
     const file = path.join(folder, path.normalize(name));
     if (!fs.existsSync(file)) {
@@ -19,7 +19,12 @@ export function serve(folder) {
     }
     response.writeHead(200, { "content-type": TYPES[file.split(".").pop()] ?? "text/plain" });
     fs.createReadStream(file).pipe(response);
-  });
+  };
+}
+
+/// Static files, as any host serves them.
+export function serve(folder) {
+  const server = http.createServer(answerFrom(folder));
   return new Promise((resolve) => server.listen(0, "127.0.0.1", () => resolve(server)));
 }
 
