@@ -142,6 +142,15 @@ export class Edition {
     await this.wait(200);
   }
 
+  /// Clicks on the time line at this share of its length.
+  async goTo(share) {
+    const [x0, y0, x1, y1] = (await this.widget("Time line")).seen;
+    const x = x0 + 8 + share * (x1 - x0 - 16);
+    await this.page.mouse.move(x, (y0 + y1) / 2);
+    await this.wait(60);
+    await this.page.mouse.click(x, (y0 + y1) / 2, { delay: 60 });
+  }
+
   /// Presses `key` with Control.
   async control(key) {
     await this.page.keyboard.down("Control");
