@@ -33,7 +33,7 @@ pack_web() {
     packed=$(packed_web)
     rm -rf "$packed"
     mkdir -p "$packed"
-    for file in index.html page.css page.js underfoot.js underfoot.wasm; do
+    for file in index.html page.css page.js files.js underfoot.js underfoot.wasm; do
         gzip -9nc "$made/$file" >"$packed/$file.gz"
     done
     cat "$packed"/*.gz | sha256sum | cut -c 1-16 >"$packed/version"
