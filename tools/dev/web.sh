@@ -1,7 +1,13 @@
 # The web edition: the window as WebAssembly, in a folder of static files. Read by `dev`.
 
-# The proposals that the compiler uses; every browser since 2022 has them.
-wasm_features=(bulk-memory mutable-globals multivalue nontrapping-float-to-int reference-types sign-ext)
+# The proposals that the compiler uses; every browser since March 2023 has them. Without simd128, the painter of letters
+# computes each of its vectors number by number, in a megabyte of code.
+wasm_features=(bulk-memory mutable-globals multivalue nontrapping-float-to-int reference-types sign-ext simd)
+
+# Flags of the compiler for the page, in cargo's encoding: that proposal, and panics without the paths of this computer.
+page_flags() {
+    printf -- '-Ctarget-feature=+simd128\x1f--remap-path-prefix=%s=' "${CARGO_HOME:-$HOME/.cargo}/registry/src/"
+}
 
 # The version of wasm-bindgen in Cargo.lock; its program must be of the very same one.
 bindgen_version() { sed -n '/^name = "wasm-bindgen"$/{n;s/version = "\(.*\)"/\1/p}' Cargo.lock; }
@@ -44,7 +50,7 @@ build_web() {
     local target=${CARGO_TARGET_DIR:-target}
     local made=$target/web bindgen built optimiser=crates/underfoot-web/node_modules/.bin/wasm-opt
     install_web_tools
-    step cargo rustc --locked --profile page --target wasm32-unknown-unknown -p underfoot-web --lib --crate-type cdylib
+    CARGO_ENCODED_RUSTFLAGS=$(page_flags) step cargo rustc --locked --profile page --target wasm32-unknown-unknown -p underfoot-web --lib --crate-type cdylib
     built=$target/wasm32-unknown-unknown/page/underfoot_web.wasm
     rm -rf "$made"
     step "$bindgen" --target web --no-typescript --remove-name-section --remove-producers-section --out-name underfoot --out-dir "$made" "$built"

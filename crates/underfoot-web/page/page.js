@@ -72,7 +72,7 @@ try {
   cover.hidden = true;
 } catch (error) {
   console.error(error);
-  state.textContent = typeof WebAssembly === "undefined"
-    ? "This browser has no WebAssembly, which the floor needs."
+  state.textContent = typeof WebAssembly === "undefined" || error instanceof WebAssembly.CompileError
+    ? "This browser has no WebAssembly with vectors, which the floor needs and all browsers since March 2023 have."
     : `The window cannot open: ${error?.message ?? error}`;
 }

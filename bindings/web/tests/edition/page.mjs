@@ -75,13 +75,13 @@ export class Edition {
   /** The folder for screenshots, if they are wanted. */
   static pictures = process.argv[4];
 
-  /** Opens the page; `before` runs in it before its own scripts. */
-  static async open(browser, address, before = () => {}) {
+  /** Opens the page; `before` runs in it before its own scripts. `screen` has the viewport of puppeteer. */
+  static async open(browser, address, before = () => {}, screen = { width: 1280, height: 800, hasTouch: true }) {
     const page = await browser.newPage();
     await page.evaluateOnNewDocument(listen);
     await page.evaluateOnNewDocument(before);
     const edition = new Edition(page);
-    await page.setViewport({ width: 1280, height: 800, hasTouch: true });
+    await page.setViewport(screen);
     page.on("pageerror", (error) => edition.errors.push(String(error)));
     page.on("console", (line) => { if (line.type() === "error") edition.errors.push(line.text()); });
     page.on("request", (request) => edition.requests.push(request.url()));
