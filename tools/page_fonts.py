@@ -17,8 +17,11 @@ from fontTools.ttLib import TTFont
 
 MADE = Path(__file__).resolve().parent.parent / "crates/underfoot-scene/fonts"
 
-# Punctuation, currencies, letter-like signs, arrows, mathematics, shapes and ticks.
-SIGNS = "2000-206F,2070-209F,20A0-20BF,2100-214F,2190-21FF,2200-22FF,25A0-25FF,2713-2718"
+# Punctuation, small numbers, currencies, arrows, mathematics, shapes and ticks.
+SIGNS = (
+    "2000-206F,2070-209F,20AC,2116,2122,2126,2190-21AF,21BA-21BB,21D0-21D5,21E6-21EA,2202-2248,2260-2267,22C5,"
+    "25A0-25CF,25E6,2713-2718"
+)
 
 # Latin of Western and Central Europe, Greek and Cyrillic.
 TEXT = "0020-007E,00A0-017F,0192,0218-021B,02C6-02DD,0370-03FF,0400-045F,0490-0491,1E9E,FB00-FB06," + SIGNS
