@@ -53,12 +53,16 @@ build_web() {
     CARGO_ENCODED_RUSTFLAGS=$(page_flags) step cargo rustc --locked --profile page --target wasm32-unknown-unknown -p underfoot-web --lib --crate-type cdylib
     built=$target/wasm32-unknown-unknown/page/underfoot_web.wasm
     rm -rf "$made"
-    step "$bindgen" --target web --no-typescript --remove-name-section --remove-producers-section --out-name underfoot --out-dir "$made" "$built"
+    local flags=(--target web --no-typescript --remove-producers-section --out-name underfoot --out-dir "$made")
     if [ -x "$optimiser" ]; then
-        step "$optimiser" -Oz "${wasm_features[@]/#/--enable-}" "$made/underfoot_bg.wasm" -o "$made/underfoot.wasm"
+        step "$bindgen" "${flags[@]}" "$built"
+        # In the order of their names, functions that are alike lie beside each other: gzip saves a twentieth. The names
+        # themselves are left out.
+        step "$optimiser" -Oz --reorder-functions-by-name "${wasm_features[@]/#/--enable-}" "$made/underfoot_bg.wasm" -o "$made/underfoot.wasm"
         rm "$made/underfoot_bg.wasm"
     else
         lacks "npm is missing, so wasm-opt does not make the page smaller"
+        step "$bindgen" "${flags[@]}" --remove-name-section "$built"
         mv "$made/underfoot_bg.wasm" "$made/underfoot.wasm"
     fi
     cp crates/underfoot-web/page/* "$made"
