@@ -27,7 +27,7 @@ const LOUDEST_ERROR_DB = -60;
 /// Frames that are compared with one delay: a page that is late pauses its sound, and goes on later.
 const PIECE = 960;
 
-/// The samples of a WAV file of 32-bit floats: one array per channel.
+/// The samples of a WAV file with 24 bits: one array per channel. Its steps are 138 dB below full scale.
 function readWav(file) {
   const bytes = fs.readFileSync(file);
   let [at, channels] = [12, 0];
@@ -36,13 +36,12 @@ function readWav(file) {
     if (name === "fmt ") {
       channels = bytes.readUInt16LE(at + 10);
       assert.equal(bytes.readUInt32LE(at + 12), RATE);
-      assert.equal(bytes.readUInt16LE(at + 22), 32, "32 bits");
+      assert.equal(bytes.readUInt16LE(at + 22), 24, "24 bits");
     }
     if (name === "data") {
-      const frames = Math.floor(size / 4 / channels);
-      const all = new Float32Array(bytes.buffer.slice(bytes.byteOffset + at + 8, bytes.byteOffset + at + 8 + 4 * channels * frames));
-      return Array.from({ length: channels }, (_, channel) =>
-        Float32Array.from({ length: frames }, (_, frame) => all[channels * frame + channel]));
+      const frames = Math.floor(size / 3 / channels);
+      return Array.from({ length: channels }, (_, channel) => Float32Array.from({ length: frames }, (_, frame) =>
+        bytes.readIntLE(at + 8 + 3 * (channels * frame + channel), 3) / 2 ** 23));
     }
     at += 8 + size + (size & 1);
   }
