@@ -117,11 +117,9 @@ async function dropCases({ kind, first, count, seed, texts, recording, soon }) {
       if (passed > soon) { silent.push({ index, names: files.map((one) => one.name) }); break; }
     }
     longest = Math.max(longest, performance.now() - begun);
-    // The storage of a browser has 5 MB.
-    if (index % 100 === 99) {
-      Object.keys(localStorage).filter((key) => key.includes("case-")).forEach((key) => localStorage.removeItem(key));
-    }
   }
+  // The storage of a browser has 5 MB, and kinds and effects stay beside all later layouts, with their errors.
+  Object.keys(localStorage).filter((key) => key.includes("case-")).forEach((key) => localStorage.removeItem(key));
   return { messages: [...messages], silent, longest };
 }
 
