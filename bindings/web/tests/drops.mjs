@@ -159,7 +159,7 @@ try {
     }
     // It still works: a sound layout opens, or, after a recording, the page says how it would.
     const last = path.join(os.tmpdir(), `underfoot-last-${process.pid}.ron`);
-    fs.writeFileSync(last, `Layout(version: 1, title: "last", widgets: [(id: "one", kind: "button", label: "The last", at: (2, 2), size: (1, 1))])`);
+    fs.writeFileSync(last, `Layout(version: 1, title: "last", regions: [(id: "all", at: (0, 0), size: (6, 6))], widgets: [(id: "one", kind: "button", label: "The last", at: (2, 2), size: (1, 1))])`);
     await edition.drop(last);
     if (kind === "files") await edition.widget("The last");
     else await edition.says("load the page without a link");

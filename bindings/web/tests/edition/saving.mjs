@@ -29,7 +29,7 @@ export async function saving(browser, home) {
   await write(edition, LAYOUT);
   await edition.click("Design");
   await edition.click("File");
-  await edition.click("Open file");
+  await edition.click("Open file Ctrl+O");
   await edition.says("chosen.ron");
   const change = async (key) => {
     await edition.click("Drawing board");
