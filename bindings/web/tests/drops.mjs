@@ -164,7 +164,6 @@ try {
     if (kind === "files") await edition.widget("The last");
     else await edition.says("load the page without a link");
     fs.rmSync(last);
-    await edition.picture(`drops-${kind}`);
     assert.deepEqual(edition.errors, []);
     results[kind] = { cases: wanted, longest_ms, messages: messages.size };
     if (process.env.SHOWS_MESSAGES) console.error([...messages].slice(0, 60).join("\n"));
