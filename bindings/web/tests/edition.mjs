@@ -1,5 +1,5 @@
 // The web edition in headless Chromium, with real mouse, touch and keys: a press, two feet on two sliders, controls built
-// in Design, sound, files, a link opened by another visitor, bad links, a visit without a network.
+// in Design, sound, files, saving in place, a link opened by another visitor, bad links, a visit without a network.
 //
 //     node bindings/web/tests/edition.mjs CHROMIUM FOLDER [SCREENSHOTS]
 //
@@ -7,6 +7,7 @@
 import assert from "node:assert/strict";
 import { files } from "./edition/files.mjs";
 import { Edition, linkTo, serve, visitor } from "./edition/page.mjs";
+import { saving } from "./edition/saving.mjs";
 
 const [chromium, folder] = process.argv.slice(2);
 const server = await serve(folder);
@@ -117,7 +118,7 @@ results.same_link = true;
 await opened.click("Close");
 
 // Files of the computer, those of the browser, and drafts.
-Object.assign(results, await files(other.browser, home));
+Object.assign(results, await files(other.browser, home), await saving(other.browser, home));
 
 // Bad links.
 for (const bad of ["#1.nonsense", link.slice(link.indexOf("#")).slice(0, -12), "#9.abc", "#top"]) {

@@ -54,18 +54,9 @@ const open = (browser, link) => Edition.open(browser, home + link, () => {
 
 const eventsOf = (edition) => edition.page.evaluate(() => lines);
 
-/** Clicks on the time line at this share of its length. */
-async function goTo(edition, share) {
-  const [x0, y0, x1, y1] = (await edition.widget("Time line")).seen;
-  const x = x0 + 8 + share * (x1 - x0 - 16);
-  await edition.page.mouse.move(x, (y0 + y1) / 2);
-  await edition.wait(60);
-  await edition.page.mouse.click(x, (y0 + y1) / 2, { delay: 60 });
-}
-
 /** Goes to the end of the visit as fast as the page simulates, and returns all events up to there. */
 async function played(edition) {
-  await goTo(edition, 1);
+  await edition.goTo(1);
   // At the end it stands still.
   await edition.widget("Play", "Button", 2400);
   await edition.wait(200);
@@ -137,7 +128,7 @@ assert.deepEqual(words(again), words(done), "what was done is done again");
 
 // Scrubbed back, the same once more; then taken over.
 await watcher.page.evaluate(() => { lines.length = 0; });
-await goTo(watcher, 0.8);
+await watcher.goTo(0.8);
 await watcher.wait(1500);
 const some = await eventsOf(watcher);
 assert.deepEqual(some, again.slice(0, some.length), "the same events again");

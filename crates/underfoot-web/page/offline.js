@@ -1,6 +1,8 @@
 // Serves the page from the browser's own store, so that it opens without a network after the first visit.
 const version = "VERSION";
-const files = ["./", "index.html", "page.css", "page.js", "served.js", "sound.js", "underfoot.js", "underfoot.wasm"];
+const files = [
+  "./", "index.html", "page.css", "page.js", "files.js", "served.js", "sound.js", "underfoot.js", "underfoot.wasm",
+];
 
 addEventListener("install", (event) => {
   const fresh = files.map((file) => new Request(file, { cache: "reload" }));

@@ -1,4 +1,5 @@
 // Starts the window and its sound, and keeps the page for visits without a network. A page that a floor serves joins it.
+import { takeFiles } from "./files.js";
 import { mirror } from "./served.js";
 import init, { join, open_recording, start, takes_layouts } from "./underfoot.js";
 
@@ -8,44 +9,8 @@ const state = document.getElementById("state");
 // A link that is opened in this page has another layout behind `#`. Unsaved changes stay as a draft.
 addEventListener("hashchange", () => location.reload());
 
-// Files and folders that are dropped on the page: the window gets all of them with their paths.
-const MOST_FILES = 1000;
-
-async function filesIn(entry, found) {
-  if (found.length >= MOST_FILES || entry.name.startsWith(".")) return;
-  if (entry.isFile) {
-    found.push([entry.fullPath.replace(/^\//, ""), await new Promise((take, fail) => entry.file(take, fail))]);
-    return;
-  }
-  const reader = entry.createReader();
-  const next = () => new Promise((take, fail) => reader.readEntries(take, fail));
-  for (let entries = await next(); entries.length > 0; entries = await next()) {
-    for (const inner of entries) await filesIn(inner, found);
-  }
-}
-
-// A recording larger than this does not fit into the memory of a page; its answer names the limit.
-const MOST_BYTES = 2 ** 26;
-
-async function play(path, file) {
-  // One byte more is enough for the answer.
-  open_recording(path, new Uint8Array(await file.slice(0, MOST_BYTES + 1).arrayBuffer()));
-}
-
-addEventListener("drop", async (event) => {
-  event.preventDefault();
-  const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry);
-  const found = [];
-  for (const entry of entries) await filesIn(entry, found);
-  // On the floor of a server there is neither a recording nor a visit.
-  const recording = mirror === null && found.length === 1 && found.find(([path]) => path.endsWith(".mcap"));
-  if (recording) return play(...recording);
-  if (mirror === null && !takes_layouts()) return;
-  // Of a folder, only the files that the window can open; a single file of another form gets its own message.
-  const texts = found.filter(([path]) => path.endsWith(".ron"));
-  const detail = entries.every((entry) => entry.isFile) ? found : texts;
-  dispatchEvent(new CustomEvent("underfoot-files", { detail }));
-}, true);
+// On the floor of a server there is neither a recording nor a visit.
+takeFiles(mirror === null ? { play: open_recording, takesLayouts: takes_layouts } : {});
 
 // Over plain HTTP from another computer, browsers have no service worker: the page then needs its server.
 // So does a page of a floor, which is of no use without it.
@@ -107,7 +72,7 @@ try {
   cover.hidden = true;
 } catch (error) {
   console.error(error);
-  state.textContent = typeof WebAssembly === "undefined"
-    ? "This browser has no WebAssembly, which the floor needs."
+  state.textContent = typeof WebAssembly === "undefined" || error instanceof WebAssembly.CompileError
+    ? "This browser has no WebAssembly with vectors, which the floor needs and all browsers since March 2023 have."
     : `The window cannot open: ${error?.message ?? error}`;
 }

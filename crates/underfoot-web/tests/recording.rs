@@ -1,4 +1,6 @@
 //! A recording that is dropped on a page, without a browser.
+//!
+//! `PROPTEST_CASES=10000` in the environment tries more damaged ones.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::sync::LazyLock;
@@ -84,8 +86,13 @@ fn bytes_that_are_no_recording_and_too_many_say_so() {
     assert!(matches!(RecordingReel::new("a.mcap", vec![0; (64 << 20) + 1]), Err(NoFloor::Large)));
 }
 
+fn cases() -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|count| count.parse().ok());
+    ProptestConfig::with_cases(asked.unwrap_or(60))
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(cases())]
 
     /// Recordings that are changed or cut anywhere play as far as they can be read, or are refused with a sentence.
     #[test]

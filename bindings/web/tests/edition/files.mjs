@@ -31,10 +31,16 @@ function makeFolder() {
   return home;
 }
 
+/// In the page: the browser gives no places of dropped files. Otherwise it would ask the user at the first save, and no
+/// script can answer; `saving.mjs` has saving in place.
+function hidePlaces() {
+  delete DataTransferItem.prototype.getAsFileSystemHandle;
+}
+
 /// Opens, changes, saves and recovers layouts; returns the results for the report.
 export async function files(browser, home) {
   const folder = makeFolder(), at = (name) => path.join(folder, name);
-  const page = await Edition.open(browser, home);
+  const page = await Edition.open(browser, home, hidePlaces);
   await page.choose("map");
   const downloads = at("downloads");
   const wire = await browser.target().createCDPSession();

@@ -8,9 +8,9 @@ import puppeteer from "puppeteer-core";
 
 const TYPES = { html: "text/html", js: "text/javascript", css: "text/css", wasm: "application/wasm" };
 
-/// Static files, as any host serves them.
-export function serve(folder) {
-  const server = http.createServer((request, response) => {
+/// The answers of a host of static files to requests for those of `folder`.
+export function answerFrom(folder) {
+  return (request, response) => {
     const name = new URL(request.url, "http://x").pathname.replace(/\/$/, "/index.html");
     const file = path.join(folder, path.normalize(name));
     if (!fs.existsSync(file)) {
@@ -19,7 +19,12 @@ export function serve(folder) {
     }
     response.writeHead(200, { "content-type": TYPES[file.split(".").pop()] ?? "text/plain" });
     fs.createReadStream(file).pipe(response);
-  });
+  };
+}
+
+/// Static files, as any host serves them.
+export function serve(folder) {
+  const server = http.createServer(answerFrom(folder));
   return new Promise((resolve) => server.listen(0, "127.0.0.1", () => resolve(server)));
 }
 
@@ -70,13 +75,13 @@ export class Edition {
   /** The folder for screenshots, if they are wanted. */
   static pictures = process.argv[4];
 
-  /** Opens the page; `before` runs in it before its own scripts. */
-  static async open(browser, address, before = () => {}) {
+  /** Opens the page; `before` runs in it before its own scripts. `screen` has the viewport of puppeteer. */
+  static async open(browser, address, before = () => {}, screen = { width: 1280, height: 800, hasTouch: true }) {
     const page = await browser.newPage();
     await page.evaluateOnNewDocument(listen);
     await page.evaluateOnNewDocument(before);
     const edition = new Edition(page);
-    await page.setViewport({ width: 1280, height: 800, hasTouch: true });
+    await page.setViewport(screen);
     page.on("pageerror", (error) => edition.errors.push(String(error)));
     page.on("console", (line) => { if (line.type() === "error") edition.errors.push(line.text()); });
     page.on("request", (request) => edition.requests.push(request.url()));
@@ -135,6 +140,15 @@ export class Edition {
     await this.wait(120);
     await this.page.mouse.click(x, y, { delay: 120 });
     await this.wait(200);
+  }
+
+  /// Clicks on the time line at this share of its length.
+  async goTo(share) {
+    const [x0, y0, x1, y1] = (await this.widget("Time line")).seen;
+    const x = x0 + 8 + share * (x1 - x0 - 16);
+    await this.page.mouse.move(x, (y0 + y1) / 2);
+    await this.wait(60);
+    await this.page.mouse.click(x, (y0 + y1) / 2, { delay: 60 });
   }
 
   /// Presses `key` with Control.

@@ -50,6 +50,7 @@ mod built_in {
             "/" => ("text/html; charset=utf-8", packed!("index.html")),
             "/page.css" => ("text/css; charset=utf-8", packed!("page.css")),
             "/page.js" => (SCRIPT, packed!("page.js")),
+            "/files.js" => (SCRIPT, packed!("files.js")),
             "/served.js" => (SCRIPT, FileContent::Text(SERVED)),
             "/underfoot.js" => (SCRIPT, packed!("underfoot.js")),
             "/underfoot.wasm" => ("application/wasm", packed!("underfoot.wasm")),

@@ -13,6 +13,7 @@ mod file;
 mod greeting;
 mod http;
 mod layout;
+mod leftover;
 mod off;
 mod origin;
 mod pages;

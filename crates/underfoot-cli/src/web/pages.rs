@@ -5,7 +5,7 @@ use std::net::TcpStream;
 use super::http::{RequestHead, turn_away};
 use super::origin::{may_be_named, may_connect};
 use super::watch::{Watched, dashboard};
-use super::{Shared, edition, plain};
+use super::{Shared, edition, leftover, plain};
 
 /// Answers one request.
 pub(super) fn answer(stream: TcpStream, head: &RequestHead, shared: &Shared) {
@@ -21,7 +21,8 @@ pub(super) fn answer(stream: TcpStream, head: &RequestHead, shared: &Shared) {
         );
     }
     let path = head.path.as_str();
-    let file = edition::file(path).or_else(|| plain::file(path)).or_else(|| dashboard::file(path));
+    let pages = edition::file(path).or_else(|| plain::file(path)).or_else(|| dashboard::file(path));
+    let file = pages.or_else(|| leftover::file(path));
     if let Some(file) = file.or((path == "/").then_some(plain::PAGE)) {
         return file.answer(stream, head);
     }

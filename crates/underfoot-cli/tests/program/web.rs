@@ -302,10 +302,19 @@ fn pages_load_their_own_files_alone_under_policies_without_inline_scripts() {
     let (run, web) = run(&site, &[]);
     let mut files =
         vec!["/plain", "/plain.css", "/plain.js", "/dashboard", "/dashboard.css", "/dashboard.js", "/"];
+    // In the place of the service worker of a static page.
+    files.push("/offline.js");
     // A plain build has the plain page in this place, and names the command that builds the other.
     let has_edition = cfg!(feature = "web-edition");
     if has_edition {
-        files.extend(["/page.css", "/page.js", "/served.js", "/underfoot.js", "/underfoot.wasm"]);
+        files.extend([
+            "/page.css",
+            "/page.js",
+            "/files.js",
+            "/served.js",
+            "/underfoot.js",
+            "/underfoot.wasm",
+        ]);
     } else {
         let (_, page) = got(web, "/");
         assert_eq!(page, got(web, "/plain").1);
@@ -321,7 +330,8 @@ fn pages_load_their_own_files_alone_under_policies_without_inline_scripts() {
             assert!(policy.split("; ").any(|own| own == part), "{path}: {policy}");
         }
         // The word also stands in the one exception, by which the page of the web edition compiles its WebAssembly.
-        let is_edition = has_edition && !path.starts_with("/plain") && !path.starts_with("/dashboard");
+        let others = ["/plain", "/dashboard", "/offline.js"];
+        let is_edition = has_edition && !others.iter().any(|other| path.starts_with(other));
         let script = if is_edition { "script-src 'self' 'wasm-unsafe-eval'" } else { "script-src 'self'" };
         assert!(policy.split("; ").any(|own| own == script), "{path}: {policy}");
         assert!(!policy.replace("'wasm-unsafe-eval'", "").contains("unsafe"), "{path}: {policy}");

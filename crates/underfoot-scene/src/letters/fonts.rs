@@ -44,10 +44,14 @@ impl std::fmt::Debug for Fonts {
     }
 }
 
-/// The fonts of windows and pictures: the default fonts of egui, and one with more signs, such as arrows.
+/// The fonts of windows and pictures: the default fonts of egui, and one with more signs, such as arrows. In a browser,
+/// their common letters.
 #[must_use]
 pub fn definitions() -> FontDefinitions {
+    #[cfg(not(target_arch = "wasm32"))]
     let mut all = FontDefinitions::default();
+    #[cfg(target_arch = "wasm32")]
+    let mut all = super::page::definitions();
     if let Some(family) = all.families.get_mut(&FontFamily::Proportional) {
         family.push("Hack".into());
     }

@@ -6,6 +6,9 @@
 
 mod fonts;
 mod line;
+#[cfg(any(target_arch = "wasm32", test))]
+#[cfg_attr(not(target_arch = "wasm32"), allow(dead_code, reason = "its tests run on the desktop"))]
+mod page;
 #[cfg(feature = "system_fonts")]
 mod system;
 #[cfg(test)]

@@ -8,6 +8,7 @@
 //! | `read`, `save`, `write_over` and the like | files | entries of the browser's local storage |
 //! | `FolderLock` | a locked file | an entry that the page renews |
 //! | `FileInbox`, `give` | paths | files and folders copied into the storage, and downloads |
+//! | `note_saved` | nothing | the file from which an entry was copied, where the browser can write it |
 //! | `texts_beside` | the texts in a folder | entries of the storage |
 //! | `repeat` | a thread | the frames of the page |
 //! | `put_report` | a file | a name in the page |
@@ -33,7 +34,7 @@ pub(crate) use desktop::files::{read, remove, save, write_over};
 #[cfg(all(feature = "window", target_arch = "wasm32"))]
 pub(crate) use browser::{
     files::{canonical, is_file, is_folder, make_folder},
-    inbox::{FileInbox, GIVES, give},
+    inbox::{FileInbox, GIVES, give, note_saved},
     lock::FolderLock,
     repeat::repeat,
     screen::{put_report, report_place},
@@ -41,7 +42,7 @@ pub(crate) use browser::{
 #[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 pub(crate) use desktop::{
     files::{canonical, is_file, is_folder, make_folder},
-    inbox::{FileInbox, GIVES, give},
+    inbox::{FileInbox, GIVES, give, note_saved},
     lock::FolderLock,
     repeat::repeat,
     screen::{put_report, report_place},
@@ -63,4 +64,6 @@ pub(crate) enum Arrival {
     Parts(usize),
     /// The reason why a file did not come.
     Refused(String),
+    /// A message of the page about a file.
+    Told(String),
 }

@@ -11,7 +11,7 @@ use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast, JsValue};
 use web_sys::{Blob, File, HtmlAnchorElement, HtmlInputElement, Url};
 
-use super::dropped::{DropListener, FileAt};
+use super::dropped::{CHOOSE, FILES, FileAt, PageListener, SAVED, TOLD, dispatch, files_of};
 use super::files::save;
 use crate::platform::{Arrival, Incoming, placed};
 
@@ -19,7 +19,7 @@ use crate::platform::{Arrival, Incoming, placed};
 pub(crate) struct FileInbox {
     come: Receiver<Arrival>,
     door: Door,
-    _drops: DropListener,
+    _listeners: [PageListener; 2],
 }
 
 /// The end at which files come in.
@@ -38,8 +38,16 @@ impl FileInbox {
     pub(crate) fn new() -> Self {
         let (sent, come) = channel();
         let door = Door { sent, ctx: Rc::default() };
-        let dropped = door.clone();
-        Self { come, door, _drops: DropListener::new(move |files| dropped.copy(files)) }
+        let (dropped, told) = (door.clone(), door.clone());
+        let listeners = [
+            PageListener::new(FILES, move |detail| dropped.copy(files_of(&detail))),
+            PageListener::new(TOLD, move |detail| {
+                if let Some(text) = detail.as_string() {
+                    told.give(Arrival::Told(text));
+                }
+            }),
+        ];
+        Self { come, door, _listeners: listeners }
     }
 
     /// Does nothing: the page reports what is dropped on it, with folders.
@@ -47,6 +55,10 @@ impl FileInbox {
 
     /// Lets the user choose files of the computer.
     pub(crate) fn choose(&self) {
+        // The page of a browser that can also save in place.
+        if dispatch(CHOOSE, &JsValue::NULL) {
+            return;
+        }
         if let Err(error) = ask(self.door.clone()) {
             self.door.give(Arrival::Refused(format!("the browser shows no files: {}", words(&error))));
         }
@@ -136,6 +148,12 @@ async fn stored(path: &str, file: &File) -> Result<(Incoming, PathBuf), String> 
     let (content, place) = placed(path, &text);
     save(&text, &place).map_err(|error| error.to_string())?;
     Ok((content, place))
+}
+
+/// Reports a layout that the user has saved at `path`: the page puts it into its own file too, if it can, and tells.
+pub(crate) fn note_saved(path: &Path, text: &str) {
+    let path = path.display().to_string();
+    dispatch(SAVED, &js_sys::Array::of2(&path.into(), &text.into()));
 }
 
 fn words(error: &JsValue) -> String {

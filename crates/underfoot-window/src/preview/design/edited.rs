@@ -147,14 +147,16 @@ impl EditedLayout {
         self.page = self.page.min(self.layout().pages.len().saturating_sub(1));
     }
 
-    /// Looks for letters of the present text that the fonts of the window lack.
+    /// Looks for letters of the present text that the fonts of the window lack. In a page, the browser draws those.
     pub(super) fn refresh_undrawn(&mut self, ctx: &egui::Context) {
         if self.undrawn_of == Some(self.document.revision()) {
             return;
         }
         self.undrawn_of = Some(self.document.revision());
         let font = egui::FontId::proportional(12.0);
-        let has = |letter: char| ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter));
+        let has = |letter: char| {
+            cfg!(target_arch = "wasm32") || ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter))
+        };
         self.undrawn = self.document.undrawn(|text| letters::missing_by(text, has));
     }
 

@@ -23,7 +23,10 @@ impl Designer {
         };
         let text = self.edited.document.file_text();
         match self.storage.file.save(&text) {
-            Ok(Saving::Saved) => self.edited.say(format!("Saved in {}", path.display())),
+            Ok(Saving::Saved) => {
+                self.edited.say(format!("Saved in {}", path.display()));
+                platform::note_saved(&path, &text);
+            }
             Ok(other) => {
                 if self.take_in(other) {
                     self.save();

@@ -81,7 +81,7 @@ impl Designer {
                 shown.messages.note(format!("{parts} beside the layouts now"));
                 shown.messages.files_changed = true;
             }
-            Some(Arrival::Refused(wrong)) => shown.messages.note(wrong),
+            Some(Arrival::Refused(text) | Arrival::Told(text)) => shown.messages.note(text),
             None => {}
         }
         if std::mem::take(&mut shown.messages.files_changed) {
