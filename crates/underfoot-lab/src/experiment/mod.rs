@@ -12,7 +12,7 @@
 //! | [`SpotTable`], [`SeamTable`] | accuracy of one contact, over a tile and at its seams | |
 //! | [`PlaceTable`] | accuracy of one foot, by its force and its distance from a seam | |
 //! | [`PeopleTable`] | accuracy of both feet of walking, turning and standing people | |
-//! | [`SceneTable`] | accuracy of all contacts in fourteen scenes, on floors of several qualities | |
+//! | [`SceneTable`] | accuracy of all contacts in fifteen scenes, on floors of several qualities | |
 //! | [`TapTable`] | influence of a heavy foot beside a region on the foot that works in it | |
 //! | [`SeatedTable`] | sliders under seated people: first answer, and changes of a value at rest | |
 //! | [`BesideTable`] | buttons tapped beside a standing foot, by the region's cursor rule | |

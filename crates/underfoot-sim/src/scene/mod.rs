@@ -4,6 +4,7 @@ mod body;
 mod gear;
 mod standing;
 mod thing;
+mod turning;
 mod walking;
 mod working;
 
@@ -49,11 +50,13 @@ pub enum SceneKind {
     Rock,
     /// A foot rests on a control and turns about its heel or ball by 20 to 60 degrees, there and back.
     Turn,
+    /// A person turns on the spot by small steps.
+    TurnAround,
 }
 
 impl SceneKind {
     /// All kinds, in the order of tables.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Walking,
         Self::Shifting,
         Self::Jumping,
@@ -68,6 +71,7 @@ impl SceneKind {
         Self::Press,
         Self::Rock,
         Self::Turn,
+        Self::TurnAround,
     ];
 
     /// Returns the name in tables.
@@ -88,6 +92,7 @@ impl SceneKind {
             Self::Press => "foot presses",
             Self::Rock => "foot rocks",
             Self::Turn => "foot turns",
+            Self::TurnAround => "turning around",
         }
     }
 }
@@ -131,6 +136,7 @@ impl PlayedScene {
             SceneKind::Press => Ok(Self::acted(working::press(&mut body, bounds))),
             SceneKind::Rock => Ok(Self::acted(working::rock(&mut body, bounds))),
             SceneKind::Turn => Ok(Self::acted(working::turn(&mut body, bounds))),
+            SceneKind::TurnAround => Ok(Self::acted(turning::turn_around(&mut body, bounds))),
         }
     }
 
@@ -211,6 +217,7 @@ mod tests {
             (SceneKind::FaceToFace, 4..=4),
             (SceneKind::LandingTogether, 2..=2),
             (SceneKind::Rock, 1..=2),
+            (SceneKind::TurnAround, 2..=2),
         ] {
             let found = most(kind);
             assert!(found.iter().all(|count| expected.contains(count)), "{kind:?}: {found:?}");

@@ -1,4 +1,4 @@
-//! Scenes of people who stay in place: shifting, jumping, turning, kneeling, landing.
+//! Scenes of people who stay in place: shifting, jumping, pivoting, kneeling, landing.
 
 use glam::Vec2;
 use rand::RngExt;
@@ -10,7 +10,7 @@ use crate::track::forward;
 use underfoot::floor::Rect;
 
 /// Two feet of a standing, swaying person near the centre of the floor; left foot first, without force yet.
-fn two_feet(body: &mut RandomPerson, bounds: Rect, width_m: f32) -> [SceneObject; 2] {
+pub(super) fn two_feet(body: &mut RandomPerson, bounds: Rect, width_m: f32) -> [SceneObject; 2] {
     let middle = body.place(bounds, 0.5);
     let facing = body.angle();
     let turn_out = body.habit.turn_out();
@@ -32,7 +32,7 @@ fn share_weight(feet: &mut [SceneObject; 2], at_s: f64, weight_n: f32, right: f3
 }
 
 /// The person steps onto the floor, one foot after the other, and stands on both after a second.
-fn step_on(body: &mut RandomPerson, feet: &mut [SceneObject; 2], weight_n: f32) {
+pub(super) fn step_on(body: &mut RandomPerson, feet: &mut [SceneObject; 2], weight_n: f32) {
     let first = if body.sign() > 0.0 { 0.0 } else { 1.0 };
     share_weight(feet, 0.1, 0.0, 0.5);
     share_weight(feet, 0.35, weight_n, first);
