@@ -17,10 +17,10 @@ from fontTools.ttLib import TTFont
 
 MADE = Path(__file__).resolve().parent.parent / "crates/underfoot-scene/fonts"
 
-# Punctuation, small numbers, currencies, arrows, mathematics, shapes and ticks.
+# Punctuation, small numbers, currencies, arrows, mathematics, and shapes.
 SIGNS = (
     "2000-206F,2070-209F,20AC,2116,2122,2126,2190-21AF,21BA-21BB,21D0-21D5,21E6-21EA,2202-2248,2260-2267,22C5,"
-    "25A0-25CF,25E6,2713-2718"
+    "25A0-25CF,25E6"
 )
 
 # Latin of Western and Central Europe, Greek and Cyrillic.

@@ -17,8 +17,9 @@ pub fn first_layout(geometry: &Geometry) -> String {
         })
         .collect();
     format!(
-        "// A button on each tile: a first layout, to try the floor.\nLayout(\n    version: 1,\n    regions: [(id: \
-         \"all\", at: (0, 0), size: ({}, {}), cursor: Working)],\n    widgets: [\n{widgets}    ],\n)\n",
+        "// A button on each tile: a first layout, to try the floor.\nLayout(\n    version: 1,\n    title: \"First \
+         layout\",\n    regions: [(id: \"all\", at: (0, 0), size: ({}, {}), cursor: Working)],\n    widgets: \
+         [\n{widgets}    ],\n)\n",
         geometry.columns(),
         geometry.rows()
     )
@@ -40,7 +41,8 @@ mod tests {
             let text = first_layout(&geometry);
             let layout = parse_layout(&text, "first", &Kinds::builtin(), &geometry);
             let tiles = geometry.tiles().filter(|tile| geometry.has(*tile)).count();
-            assert_eq!(layout.unwrap_or_else(|problems| panic!("{problems}")).layout.widgets.len(), tiles);
+            let layout = layout.unwrap_or_else(|problems| panic!("{problems}")).layout;
+            assert_eq!((layout.title.as_str(), layout.widgets.len()), ("First layout", tiles));
         }
     }
 }
