@@ -4,7 +4,7 @@
     python3 -m venv made && made/bin/pip install fonttools && made/bin/python tools/page_fonts.py
 
 Needed after a new version of egui, and after the window uses a letter that they lack, which a test of the drawings
-names. A browser draws all other letters itself. The whole fonts have 670 kB, these 160; egui fits letters to pixels with
+names. A browser draws all other letters itself. The whole fonts have 670 kB, these 115; egui fits letters to pixels with
 its own rules where a font has none, so these fonts have none.
 """
 

@@ -300,10 +300,17 @@ fn got(web: SocketAddr, path: &str) -> (String, String) {
 fn pages_load_their_own_files_alone_under_policies_without_inline_scripts() {
     let site = Site::new();
     let (run, web) = run(&site, &[]);
-    let mut files =
-        vec!["/plain", "/plain.css", "/plain.js", "/dashboard", "/dashboard.css", "/dashboard.js", "/"];
-    // In the place of the service worker of a static page.
-    files.push("/offline.js");
+    // The last one takes the place of the service worker of a static page.
+    let mut files = vec![
+        "/plain",
+        "/plain.css",
+        "/plain.js",
+        "/dashboard",
+        "/dashboard.css",
+        "/dashboard.js",
+        "/",
+        "/offline.js",
+    ];
     // A plain build has the plain page in this place, and names the command that builds the other.
     let has_edition = cfg!(feature = "web-edition");
     if has_edition {

@@ -14,8 +14,8 @@ use underfoot::floor::Rect;
 /// carries the person and follows a part of the turn.
 ///
 /// # Source
-/// Our assumption, from timed half and whole turns of adults: a half turn takes some 2 to 3 s and four to six steps, so
-/// a step takes about half a second, a third of it on both feet. Feet land flat or on the ball.
+/// Our assumption, without a measurement behind it: a half turn takes some 2 to 3 s and four to six steps, so a step
+/// takes about half a second, a third of it on both feet. Feet land flat or on the ball.
 pub(super) fn turn_around(body: &mut RandomPerson, bounds: Rect) -> Vec<SceneObject> {
     let (weight, width) = (body.weight_n(), body.person().stand_width_m);
     let mut feet = two_feet(body, bounds, width);
