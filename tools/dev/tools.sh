@@ -19,6 +19,8 @@ tool_packages() {
     has systemd-analyze || echo systemd
     # A sound card that keeps time, without hardware.
     has jackd || echo jackd2
+    # MIDI through it.
+    is_left_out jack || pkg-config --exists jack 2>/dev/null || echo libjack-jackd2-dev
     compgen -G '/usr/lib/*/alsa-lib/libasound_module_pcm_jack.so' >/dev/null || echo libasound2-plugins
     # Real windows with real input, on a display of their own.
     has Xvfb || echo xvfb
