@@ -104,6 +104,14 @@ pub struct CalibrationRecord {
     pub residual: f32,
 }
 
+impl CalibrationRecord {
+    /// A record whose residual is rounded to four decimals, as a floor file shows it; NaN stays NaN.
+    #[must_use]
+    pub fn rounded(day: Day, residual: f32) -> Self {
+        Self { day, residual: four_decimals(residual) }
+    }
+}
+
 /// Day of the measurement of a tile's position map, and the residual with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapRecord {
@@ -111,6 +119,18 @@ pub struct MapRecord {
     pub day: Day,
     /// Position error with the map that 95 % of the points do not exceed, in metres.
     pub residual_m: f32,
+}
+
+impl MapRecord {
+    /// A record whose residual is rounded to a tenth of a millimetre, as a floor file shows it; NaN stays NaN.
+    #[must_use]
+    pub fn rounded(day: Day, residual_m: f32) -> Self {
+        Self { day, residual_m: four_decimals(residual_m) }
+    }
+}
+
+fn four_decimals(residual: f32) -> f32 {
+    (f64::from(residual * 1e4).round() / 1e4) as f32
 }
 
 #[cfg(test)]

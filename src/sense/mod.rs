@@ -34,6 +34,7 @@ mod contact;
 mod frame;
 mod health;
 mod loaded;
+mod scatter;
 mod sensing;
 mod table;
 mod track;
@@ -51,5 +52,6 @@ pub use contact::{Contact, ContactId, Covariance, Cursor, CursorPicker, Stickine
 pub use frame::{CalibrationFault, ForceFrame, HoldDoubt, Quality, TileSample};
 pub use health::{SensorHealth, Trouble};
 pub use loaded::LoadThreshold;
+pub use scatter::Scatter;
 pub use sensing::{Method, Sensing, SensingConfig};
 pub use table::{ForceTable, TableError, TableNotes, TableProblem, TableProblems};

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use crate::floor::{Floor, SensorId};
+use crate::sense::scatter::Scatter;
 use crate::units::Newtons;
 
 /// Source of the tare, the force on the empty floor, which is subtracted from every reading.
@@ -94,61 +95,37 @@ pub(super) struct TareMeter {
     begun_ns: Option<i64>,
     /// Start of the present average.
     span_began_ns: Option<i64>,
-    channels: Vec<Moments>,
-}
-
-/// Running mean and scatter.
-///
-/// # Source
-/// Welford's recurrence: `m += (x - m) / n`, `s += (x - m_before)(x - m_after)`.
-#[derive(Clone, Copy, Debug, Default)]
-struct Moments {
-    count: u32,
-    mean: f64,
-    squares: f64,
-}
-
-impl Moments {
-    fn add(&mut self, value: f64) {
-        self.count += 1;
-        let before = value - self.mean;
-        self.mean += before / f64::from(self.count);
-        self.squares += before * (value - self.mean);
-    }
-
-    fn deviation(&self) -> f64 {
-        if self.count < 2 { 0.0 } else { (self.squares / f64::from(self.count - 1)).sqrt() }
-    }
+    channels: Vec<Scatter>,
 }
 
 impl TareMeter {
     pub(super) fn new(channels: usize, rules: TareRules) -> Self {
-        Self { rules, begun_ns: None, span_began_ns: None, channels: vec![Moments::default(); channels] }
+        Self { rules, begun_ns: None, span_began_ns: None, channels: vec![Scatter::default(); channels] }
     }
 
     /// Restarts the average after a gap in the stream; the time-out continues.
     pub(super) fn interrupt(&mut self) {
         self.span_began_ns = None;
-        self.channels.fill(Moments::default());
+        self.channels.fill(Scatter::default());
     }
 
     /// Adds one sample of all channels, NaN for a bad reading or an unused channel.
     pub(super) fn add(&mut self, at_ns: i64, forces: impl Iterator<Item = f32>) -> Option<TareResult> {
         let begun = *self.begun_ns.get_or_insert(at_ns);
         let span_began = *self.span_began_ns.get_or_insert(at_ns);
-        for (moments, force) in self.channels.iter_mut().zip(forces) {
+        for (scatter, force) in self.channels.iter_mut().zip(forces) {
             if force.is_finite() {
-                moments.add(f64::from(force));
+                scatter.add(f64::from(force));
             }
         }
         if passed(span_began, at_ns) < self.rules.span {
             return None;
         }
         let found = match self.worst() {
-            Some((channel, moments)) => TareResult::Noisy {
+            Some((channel, scatter)) => TareResult::Noisy {
                 channel,
-                mean: Newtons(moments.mean as f32),
-                deviation: Newtons(moments.deviation() as f32),
+                mean: Newtons(scatter.mean() as f32),
+                deviation: Newtons(scatter.deviation() as f32),
             },
             None => TareResult::Quiet(self.means()),
         };
@@ -158,10 +135,10 @@ impl TareMeter {
     }
 
     /// The channel furthest beyond the limits; `None` if all are within.
-    fn worst(&self) -> Option<(usize, Moments)> {
-        let excess = |moments: &Moments| {
-            let scatter = moments.deviation() / f64::from(self.rules.quiet.0);
-            let load = moments.mean / f64::from(self.rules.most.0);
+    fn worst(&self) -> Option<(usize, Scatter)> {
+        let excess = |readings: &Scatter| {
+            let scatter = readings.deviation() / f64::from(self.rules.quiet.0);
+            let load = readings.mean() / f64::from(self.rules.most.0);
             scatter.max(load)
         };
         let worst = self.channels.iter().enumerate().max_by(|a, b| excess(a.1).total_cmp(&excess(b.1)))?;
@@ -171,7 +148,7 @@ impl TareMeter {
     }
 
     fn means(&self) -> Vec<Option<f32>> {
-        self.channels.iter().map(|moments| (moments.count > 0).then_some(moments.mean as f32)).collect()
+        self.channels.iter().map(|scatter| (scatter.count() > 0).then_some(scatter.mean() as f32)).collect()
     }
 }
 

@@ -8,7 +8,7 @@ use underfoot::floor::{Calibration, CalibrationRecord, Floor, LawKind};
 use underfoot::sense::{Candidate, Fit, FitError, Judgement, LoadTable, SensorLoads, Verdict};
 use underfoot_scene::picture;
 
-use super::{MOST_BYTES, Out, count, plot, rounded, say_if_unsaved, today};
+use super::{MOST_BYTES, Out, count, plot, say_if_unsaved, today};
 use crate::failure::Failure;
 use crate::floor_args::FloorArgs;
 use crate::table;
@@ -100,7 +100,7 @@ fn keep(floor: &mut Floor, judged: &[(&SensorLoads, Judgement)]) {
     for (loads, judgement) in judged {
         match (judgement.verdict, judgement.fit) {
             (Verdict::Good | Verdict::Poor, Ok(fit)) => {
-                let record = CalibrationRecord { day, residual: rounded(fit.residual) };
+                let record = CalibrationRecord::rounded(day, fit.residual);
                 floor.recalibrate(loads.sensor, fit.calibration, Some(record));
             }
             (Verdict::Replace, _) => {

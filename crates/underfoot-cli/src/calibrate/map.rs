@@ -6,7 +6,7 @@ use serde_json::json;
 use underfoot::floor::{Floor, MapRecord, TileId};
 use underfoot::sense::{Errors, MapError, MapFit, PressTable};
 
-use super::{MOST_BYTES, Out, count, rounded, say_if_unsaved, today};
+use super::{MOST_BYTES, Out, count, say_if_unsaved, today};
 use crate::failure::Failure;
 use crate::floor_args::FloorArgs;
 use crate::table;
@@ -73,7 +73,7 @@ fn keep(floor: &mut Floor, fits: &Fits) {
             (fit, floor.position_maps.get_mut(index), floor.map_records.get_mut(index))
         {
             *map = Some(fit.map);
-            *record = Some(MapRecord { day, residual_m: rounded(fit.after.p95_m) });
+            *record = Some(MapRecord::rounded(day, fit.after.p95_m));
         }
     }
 }

@@ -59,11 +59,6 @@ fn count(number: usize, what: &str) -> String {
     if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
 }
 
-/// Rounds a residual to four decimals, for a file.
-fn rounded(residual: f32) -> f32 {
-    (f64::from(residual * 1e4).round() / 1e4) as f32
-}
-
 /// The floor file for the result of a calibration, if one is named.
 struct Out<'p>(Option<FloorOut<'p>>);
 

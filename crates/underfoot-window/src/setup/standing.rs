@@ -21,15 +21,10 @@ pub fn mark_words(mark: &StandingMark, floor: &Floor) -> String {
     format!("tile {}, {place}, facing {facing}", mark.tile)
 }
 
-/// Rounds a residual to four decimals, for a file.
-fn rounded(residual: f32) -> f32 {
-    (f64::from(residual * 1e4).round() / 1e4) as f32
-}
-
 /// Stores the laws and tares of `fit`, which was measured on `day`, in the floor.
 pub fn keep_laws(floor: &mut Floor, fit: &StandFit, day: Day) {
     for found in fit.sensors.iter().filter(|found| found.determined > 0) {
-        let record = CalibrationRecord { day, residual: rounded(found.uncertainty) };
+        let record = CalibrationRecord::rounded(day, found.uncertainty);
         floor.recalibrate(found.sensor, found.law, Some(record));
         let tile = floor.geometry.index(found.sensor.tile).and_then(|tile| floor.tare.get_mut(tile));
         if let Some(tares) = tile {

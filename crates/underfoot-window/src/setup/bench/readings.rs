@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use underfoot::floor::{Calibration, Floor, SensorId};
+use underfoot::sense::Scatter;
 use underfoot::units::Instant;
 use underfoot::wire::{Readings, SensorPacket};
 
@@ -53,32 +54,11 @@ struct WatchedBoard {
 struct WatchedSensor {
     id: SensorId,
     law: Calibration,
-    /// Share of the full scale and force on the empty floor, with their squares.
-    rest: [RestMean; 2],
+    /// Share of the full scale, and force, on the empty floor.
+    rest: [Scatter; 2],
     force_n: f32,
     greatest: Option<f32>,
     greatest_n: f32,
-}
-
-/// Mean and sum of squares, by Welford's recurrence.
-#[derive(Clone, Copy, Debug, Default)]
-struct RestMean {
-    count: u32,
-    mean: f64,
-    squares: f64,
-}
-
-impl RestMean {
-    fn add(&mut self, value: f32) {
-        self.count += 1;
-        let off = f64::from(value) - self.mean;
-        self.mean += off / f64::from(self.count);
-        self.squares += off * (f64::from(value) - self.mean);
-    }
-
-    fn deviation(&self) -> f64 {
-        (self.squares / f64::from(self.count.max(1))).sqrt()
-    }
 }
 
 impl ReadingsWatch {
@@ -88,7 +68,7 @@ impl ReadingsWatch {
             let mut sensors = Vec::new();
             let channels = board.channels.iter().map(|sensor| {
                 let id = sensor.filter(|sensor| floor.geometry.has(sensor.tile))?;
-                let (law, rest) = (floor.law(id), [RestMean::default(); 2]);
+                let (law, rest) = (floor.law(id), [Scatter::default(); 2]);
                 sensors.push(WatchedSensor { id, law, rest, force_n: 0.0, greatest: None, greatest_n: 0.0 });
                 Some(sensors.len() - 1)
             });
@@ -134,7 +114,7 @@ impl WatchedBoard {
             if self.sensors.iter().any(WatchedSensor::is_restless) {
                 // Somebody walks on the floor: once more.
                 self.first = None;
-                self.sensors.iter_mut().for_each(|sensor| sensor.rest = [RestMean::default(); 2]);
+                self.sensors.iter_mut().for_each(|sensor| sensor.rest = [Scatter::default(); 2]);
             } else {
                 self.is_rested = true;
             }
@@ -146,12 +126,12 @@ impl WatchedSensor {
     fn take(&mut self, share: Option<f32>, force_n: f32, is_rested: bool) {
         let [shares, forces] = &mut self.rest;
         if is_rested {
-            let above_n = force_n - forces.mean as f32;
+            let above_n = force_n - forces.mean() as f32;
             self.force_n += SMOOTH * (above_n - self.force_n);
             self.greatest_n = self.greatest_n.max(self.force_n);
         } else {
-            shares.add(share.unwrap_or(0.0));
-            forces.add(force_n);
+            shares.add(f64::from(share.unwrap_or(0.0)));
+            forces.add(f64::from(force_n));
         }
         if let Some(share) = share {
             self.greatest = Some(self.greatest.map_or(share, |greatest| greatest.max(share)));
@@ -168,7 +148,7 @@ impl WatchedSensor {
         let noise_n = board.is_rested.then(|| self.rest[1].deviation() as f32);
         let state = match () {
             () if board.last.is_none_or(|last| now.since(last) > SILENT) => SensorState::Silent,
-            () if self.rest[1].count == 0 => SensorState::Unread,
+            () if self.rest[1].count() == 0 => SensorState::Unread,
             () if self.greatest.is_some_and(|greatest| greatest >= SATURATED) => SensorState::Saturated,
             () if noise_n.is_some_and(|noise| noise > NOISY_N) => SensorState::Noisy,
             () if self.greatest_n >= ANSWER_N => SensorState::Answers,
