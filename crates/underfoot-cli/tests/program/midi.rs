@@ -188,14 +188,16 @@ fn a_connection_that_another_program_made_outlives_the_guardian() {
     let input = ports.lines().find(|line| line.starts_with(LISTENER)).expect("its port").to_owned();
     let connected = stage.tool("jack_connect").args(["underfoot:out", &input]).status().unwrap();
     assert!(connected.success(), "{ports}");
-    // The server's own port follows.
     let receives = |stage: &JackStage, port: &str| {
         let all = stage.connections();
         all.lines().skip_while(|line| *line != port).nth(1).is_some_and(|line| line.trim() == input)
     };
-    until("the standby is connected", || receives(&stage, "underfoot standby:out"));
     let boards = Boards::start(&site, run.address);
     until("the note goes down", || stage.is_down());
+    // The guardian looks at its connections five times a second. The server's own port connects when it is needed: until
+    // then, a server that stands still would keep the receiver waiting.
+    thread::sleep(Duration::from_millis(400));
+    assert!(!receives(&stage, "underfoot standby:out"));
     kill(guardian(&run), "KILL");
     until("the note ends", || !stage.is_down());
     drop(boards);

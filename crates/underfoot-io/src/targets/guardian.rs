@@ -162,6 +162,8 @@ impl<W: Write> Guardian<W> {
         while self.outlets.are_opening() && begun.elapsed() < OPENING {
             std::thread::sleep(Duration::from_millis(2));
         }
+        // From now on, others find the ports and connect to them.
+        self.outlets.receivers();
     }
 
     fn act(&mut self, target: usize, act: &Act) {

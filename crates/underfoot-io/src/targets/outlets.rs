@@ -112,9 +112,12 @@ impl Outlets {
         }
     }
 
-    /// Connects what has opened or appeared meanwhile.
+    /// Opens again what was gone, and connects what has opened or appeared meanwhile.
     pub(super) fn settle(&mut self) {
-        let waiting = self.doors.iter_mut().filter(|door| door.open.is_some() && !door.missing.is_empty());
+        let waiting = self.doors.iter_mut().filter(|door| match door.open {
+            Some(_) => !door.missing.is_empty(),
+            None => door.told.is_some(),
+        });
         waiting.for_each(|door| drop(door.opened()));
     }
 

@@ -1,7 +1,7 @@
 //! The server's own ways to the targets: they release everything when the guardian fails.
 //!
 //! Receivers of MIDI connect to a port, and lose it when its process ends. So the server has a port of its own from the
-//! start, connected as that of the guardian is; all other ways open when they are needed.
+//! start, which connects as that of the guardian was once it is needed; all other ways open when they are needed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::thread;
@@ -76,14 +76,14 @@ impl Standby {
         self.down.clear();
         self.lasting = self.lasting.changed(plan);
         for (index, target) in plan.targets.iter().enumerate() {
-            // A port that connects by itself does so now, since the time is short later.
+            // A port that connects by itself opens now, since the time is short later.
             if matches!(&target.to, Destination::Midi(MidiTarget { into: Some(_), .. })) {
                 self.outlets.connect(index, Vec::new());
             }
         }
     }
 
-    /// Connects the server's port of the target with this index as that of the guardian is.
+    /// Notes that the server's port of the target with this index connects as that of the guardian is.
     pub(super) fn connect(&mut self, target: usize, receivers: Vec<String>) {
         self.receivers.retain(|(other, _)| *other != target);
         self.receivers.push((target, receivers.clone()));

@@ -43,6 +43,7 @@ impl MidiBytes {
     }
 
     /// The message.
+    #[cfg(any(test, not(feature = "jack")))]
     pub(super) fn as_slice(&self) -> &[u8] {
         self.bytes.get(..self.length.into()).unwrap_or(&self.bytes)
     }

@@ -1,7 +1,11 @@
 //! An output port of JACK.
 //!
 //! Messages wait in a lock-free queue for the next cycle of the server, which takes all. One that has waited longer than
-//! [`STALE`], since the server stood still, is left out, unless it lets something come up.
+//! [`STALE`], since the server stood still, is left out, unless it lets something come up. Releases at the end of a server
+//! or a guardian are repeated for [`REPEATED`].
+//!
+//! A port connects to its receivers with its first message, or once somebody asks for them. One that stands by does not:
+//! its receivers would wait for it in each cycle, for ever if its process stands still.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -17,6 +21,7 @@ use underfoot::messages::MidiTarget;
 use super::super::outlet::OutletError;
 use super::Urgency;
 use super::bytes::MidiBytes;
+use super::echoes::Echoes;
 
 /// Longest time for which a message waits for the server.
 const STALE: Duration = Duration::from_millis(200);
@@ -27,8 +32,14 @@ const ENTRY: usize = 12;
 /// Size of the queue in bytes: 1365 messages, more than a target gets in a second.
 const QUEUE: usize = 16_384;
 
+/// Time for which releases are repeated: JACK 1.9.21 needed about 25 ms to notice that a client had died.
+const REPEATED: Duration = Duration::from_millis(80);
+
+/// The millisecond of messages that are repeated.
+const REPEAT: u64 = u64::MAX;
+
 /// Longest wait for the last messages before the port closes.
-const FAREWELL: Duration = Duration::from_millis(60);
+const FAREWELL: Duration = Duration::from_millis(120);
 
 /// The type of MIDI ports.
 const MIDI: &str = "8 bit raw midi";
@@ -41,6 +52,8 @@ pub(super) struct JackPort {
     port: Port<Unowned>,
     /// Part of the name of a port that it connects to.
     into: Option<String>,
+    /// The full names of ports to which it connects later; `None` once it has.
+    standing_by: Option<Vec<String>>,
     queue: RingBufferWriter,
     shared: Arc<PortStatus>,
     sent: u64,
@@ -53,6 +66,8 @@ struct PortStatus {
     is_gone: AtomicBool,
     /// The number of messages that the server has taken, or that were left out.
     taken: AtomicU64,
+    /// Whether the next cycle repeats releases.
+    repeats: AtomicBool,
 }
 
 /// Notices the end of the server.
@@ -62,6 +77,7 @@ struct ServerWatch(Arc<PortStatus>);
 struct MidiProcess {
     port: Port<MidiOut>,
     queue: RingBufferReader,
+    echoes: Echoes,
     shared: Arc<PortStatus>,
 }
 
@@ -81,7 +97,10 @@ impl NotificationHandler for ServerWatch {
 impl ProcessHandler for MidiProcess {
     fn process(&mut self, _: &Client, scope: &ProcessScope) -> Control {
         let mut writer = self.port.writer(scope);
+        // A buffer that is full takes no more in this cycle; the rate of a target is far below that.
+        let mut send = |bytes: &[u8]| drop(writer.write(&RawMidi { time: 0, bytes }));
         let now = self.shared.millis();
+        let mut repeats = self.echoes.repeat(&mut send);
         while self.queue.space() >= ENTRY {
             let mut entry = [0; ENTRY];
             if self.queue.read_buffer(&mut entry) < ENTRY {
@@ -93,11 +112,19 @@ impl ProcessHandler for MidiProcess {
             if let Some(bytes) = message.get(..length.into())
                 && (until == 0 || now <= until)
             {
-                // A buffer that is full takes no more in this cycle; the rate of a target is far below that.
-                let _ = writer.write(&RawMidi { time: 0, bytes });
+                if until == REPEAT {
+                    self.echoes.add(length, message);
+                    repeats = true;
+                    // Before the message counts as taken.
+                    self.shared.repeats.store(true, Ordering::Release);
+                } else {
+                    self.echoes.cancel(first);
+                }
+                send(bytes);
             }
-            self.shared.taken.fetch_add(1, Ordering::Relaxed);
+            self.shared.taken.fetch_add(1, Ordering::Release);
         }
+        self.shared.repeats.store(repeats, Ordering::Relaxed);
         Control::Continue
     }
 }
@@ -112,22 +139,32 @@ impl JackPort {
         let port = client.register_port("out", MidiOut::default()).map_err(gone)?;
         let (name, kept) = (port.name().map_err(gone)?, port.clone_unowned());
         let (queue, waiting) = RingBuffer::new(QUEUE).map_err(gone)?.into_reader_writer();
-        let (is_gone, taken) = (AtomicBool::new(false), AtomicU64::new(0));
-        let shared = Arc::new(PortStatus { begun: Instant::now(), is_gone, taken });
-        let process = MidiProcess { port, queue, shared: Arc::clone(&shared) };
+        let (is_gone, taken, repeats) = (AtomicBool::new(false), AtomicU64::new(0), AtomicBool::new(false));
+        let shared = Arc::new(PortStatus { begun: Instant::now(), is_gone, taken, repeats });
+        let echoes = Echoes::new((REPEATED.as_secs_f64() / cycle(&client).as_secs_f64()).ceil() as u32);
+        let process = MidiProcess { port, queue, echoes, shared: Arc::clone(&shared) };
         let client = client.activate_async(ServerWatch(Arc::clone(&shared)), process).map_err(gone)?;
         let into = target.into.clone();
-        let mut port = Self { client: Some(client), name, port: kept, into, queue: waiting, shared, sent: 0 };
-        port.connect_into();
-        Ok(port)
+        let (client, standing_by) = (Some(client), Some(Vec::new()));
+        Ok(Self { client, name, port: kept, into, standing_by, queue: waiting, shared, sent: 0 })
+    }
+
+    /// Makes all connections for which it waited.
+    fn take_part(&mut self) {
+        if let Some(wanted) = self.standing_by.take() {
+            self.connect_into();
+            self.connect(&wanted);
+        }
     }
 
     /// Gives `message` to the next cycle.
     pub(super) fn send(&mut self, message: &MidiBytes, urgency: Urgency) -> Result<(), OutletError> {
         self.check()?;
+        self.take_part();
         let until = match urgency {
             Urgency::Now => self.shared.millis() + STALE.as_millis() as u64,
             Urgency::Whenever => 0,
+            Urgency::Repeated => REPEAT,
         };
         if self.queue.space() < ENTRY {
             return Err(OutletError::Gone("the JACK server stands still".into()));
@@ -141,7 +178,9 @@ impl JackPort {
         Ok(())
     }
 
-    fn check(&self) -> Result<(), OutletError> {
+    /// # Errors
+    /// [`OutletError::Gone`] once the server has ended.
+    pub(super) fn check(&self) -> Result<(), OutletError> {
         if self.shared.is_gone.load(Ordering::Relaxed) {
             return Err(OutletError::Gone("the JACK server has ended".into()));
         }
@@ -151,6 +190,7 @@ impl JackPort {
     /// The full names of the ports that receive from this one; `None` without a server.
     pub(super) fn receivers(&mut self) -> Option<Vec<String>> {
         self.check().ok()?;
+        self.take_part();
         let mut names = self.port.get_connections();
         if names.is_empty() && self.connect_into() {
             names = self.port.get_connections();
@@ -158,7 +198,7 @@ impl JackPort {
         Some(names)
     }
 
-    /// Connects this port to those with these full names; returns those that are not there.
+    /// Connects this port to those with these full names, now or once it takes part; returns those that are not there.
     pub(super) fn connect(&mut self, receivers: &[String]) -> Vec<String> {
         let Some(client) = self.client.as_ref().filter(|_| self.check().is_ok()) else {
             return receivers.to_vec();
@@ -166,9 +206,14 @@ impl JackPort {
         let client = client.as_client();
         let (there, missing): (Vec<_>, Vec<_>) =
             receivers.iter().cloned().partition(|name| client.port_by_name(name).is_some());
-        for receiver in there {
-            // It may be connected already.
-            let _ = client.connect_ports_by_name(&self.name, &receiver);
+        match &mut self.standing_by {
+            Some(wanted) => *wanted = there,
+            None => {
+                for receiver in there {
+                    // It may be connected already.
+                    let _ = client.connect_ports_by_name(&self.name, &receiver);
+                }
+            }
         }
         missing
     }
@@ -183,20 +228,25 @@ impl JackPort {
     }
 }
 
+/// Time between two cycles of the server.
+fn cycle(client: &Client) -> Duration {
+    let frames = f64::from(client.buffer_size().max(1));
+    Duration::from_secs_f64(frames / f64::from(client.sample_rate().max(1)))
+}
+
 impl Drop for JackPort {
     /// Waits for the last messages.
     fn drop(&mut self) {
         let begun = Instant::now();
-        let all_taken = || self.shared.taken.load(Ordering::Relaxed) >= self.sent;
-        while self.check().is_ok() && !all_taken() && begun.elapsed() < FAREWELL {
+        let all_taken = || self.shared.taken.load(Ordering::Acquire) >= self.sent;
+        let all_said = || all_taken() && !self.shared.repeats.load(Ordering::Acquire);
+        while self.check().is_ok() && !all_said() && begun.elapsed() < FAREWELL {
             thread::sleep(Duration::from_millis(1));
         }
         if let Some(client) = self.client.take() {
             // The receivers get them within the cycle in which they were taken.
-            let frames = f64::from(client.as_client().buffer_size());
-            let cycle = Duration::from_secs_f64(frames / f64::from(client.as_client().sample_rate().max(1)));
             if self.sent > 0 && self.check().is_ok() {
-                thread::sleep(cycle.min(FAREWELL));
+                thread::sleep(cycle(client.as_client()).min(FAREWELL));
             }
             let _ = client.deactivate();
         }

@@ -6,12 +6,15 @@
 
 mod bytes;
 #[cfg(feature = "jack")]
+mod echoes;
+#[cfg(feature = "jack")]
 mod jack_port;
 #[cfg(not(feature = "jack"))]
 mod system_port;
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread::Builder;
+use std::time::Duration;
 
 use underfoot::messages::{Act, Holdable, MidiTarget};
 
@@ -29,6 +32,8 @@ enum Urgency {
     Now,
     /// It goes out whenever the port works again, since it lets something come up.
     Whenever,
+    /// The same, since a server or a guardian has ended; receivers may miss it the first time.
+    Repeated,
 }
 
 /// A port of MIDI as a target.
@@ -102,8 +107,16 @@ impl Outlet for MidiOutlet {
     }
 
     fn release(&mut self, what: &Holdable) -> Result<(), OutletError> {
-        self.send(&released(what), Urgency::Whenever)?;
-        self.send(&silenced(what), Urgency::Whenever)
+        self.send(&released(what), Urgency::Repeated)?;
+        self.send(&silenced(what), Urgency::Repeated)
+    }
+
+    fn work(&mut self) -> Result<Option<Duration>, OutletError> {
+        match self.opened() {
+            Ok(port) => port.check().map(|()| None),
+            Err(OutletError::Refused(_)) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     fn is_opening(&mut self) -> bool {
