@@ -2,6 +2,7 @@
 
 use glam::Vec2;
 
+use super::layers::LEAST_N;
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::widths::CAP_HEIGHT;
 use super::{Scene, View, names, outline, terrain};
@@ -25,9 +26,8 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     }
     seams(scene, view, gap_around(view, view.geometry.tile_m()));
     for (index, tile) in view.geometry.tiles().enumerate() {
-        let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
-        // Full colour at 700 N, one person on one foot; the square root makes light steps visible too.
-        let share = if view.show.loads { (load / 700.0).sqrt().min(1.0) * MOST_LOAD } else { 0.0 };
+        let load_n = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0);
+        let share = if view.show.loads { load_share(load_n) } else { 0.0 };
         let cell = view.geometry.cell(tile);
         if view.geometry.is_missing(tile) || terrain::hides(view, cell) {
             continue;
@@ -63,6 +63,20 @@ pub(super) fn holes(scene: &mut Scene, view: &View<'_>) {
 
 /// Maximum share of the colour of loads in a plate.
 pub(super) const MOST_LOAD: f32 = 0.55;
+
+/// Load of full colour (N): one person on one foot.
+const FULL_N: f32 = 700.0;
+
+/// Number of colours between those of no load and of full load: the eye sees no step.
+const LOAD_COLOURS: f32 = 32.0;
+
+/// Share of the colour of loads in a plate under `load_n`; the square root makes light steps visible too.
+///
+/// Noise and NaN give no colour, and colours have steps: the picture of plates that only tremble stays the same.
+fn load_share(load_n: f32) -> f32 {
+    let share = ((load_n - LEAST_N).max(0.0) / (FULL_N - LEAST_N)).min(1.0).sqrt();
+    MOST_LOAD * (share * LOAD_COLOURS).round() / LOAD_COLOURS
+}
 
 /// Share of the accent colour in an active area.
 pub(super) const TINT: f32 = 0.045;

@@ -13,8 +13,8 @@ use underfoot::layout::Widget;
 use underfoot::sense::{Covariance, Quality};
 use underfoot::wire::LinkState;
 
-/// Minimum load written on a tile (N): noise alone would make smaller ones flicker.
-const LEAST_N: f32 = 5.0;
+/// Minimum load shown on a tile (N): noise alone would make smaller ones flicker.
+pub(super) const LEAST_N: f32 = 5.0;
 
 /// Time for which the reason of an ignored press stays on its control.
 pub const TOLD: Duration = Duration::from_secs(5);

@@ -302,6 +302,30 @@ fn dots_and_circles_grow_in_area_with_the_force() {
 }
 
 #[test]
+fn a_plate_shows_who_stands_on_it_and_no_noise() {
+    let layout = map();
+    // The plates, without the force written on them.
+    let under = |force_n: f32| -> Vec<Mark> {
+        let snapshot = with(&at_rest(&layout), |snapshot| snapshot.tiles[7].force = Newtons(force_n));
+        let scene = shown(&layout, &snapshot, Show { loads: true, ..Show::WINDOW });
+        scene
+            .marks()
+            .iter()
+            .filter(|mark| matches!(mark, Mark::Box { radius_m: 0.008, .. }))
+            .copied()
+            .collect()
+    };
+    assert_eq!(under(0.0).len(), 36);
+    // Noise of two sensors of the paper's floor, and a reading that is lost.
+    for noise_n in [0.8, -0.8, f32::NAN] {
+        assert_eq!(under(0.0), under(noise_n), "{noise_n} N");
+    }
+    // A person on one foot sways by a newton or two; a step of somebody else is heavier.
+    assert_eq!(under(700.0), under(701.5));
+    assert!(under(0.0) != under(30.0) && under(30.0) != under(700.0));
+}
+
+#[test]
 fn the_cursor_stands_out_from_other_contacts() {
     let layout = map();
     let cursor = Theme::LIGHT.cursor;

@@ -3,12 +3,13 @@
 //! Without a graphics card, drawing takes most of each frame; while a foot moves, a tenth of the window changes.
 //!
 //! ```text
-//! shapes of a frame -compared with those on the canvas-> areas that differ -all shapes within them-> shapes to draw
+//! shapes of a frame -compared with those on the canvas, cell by cell-> areas that differ -all shapes within them-> shapes to draw
 //! ```
 
-mod areas;
 #[cfg(not(target_arch = "wasm32"))]
 mod framebuffer;
+mod grid;
+mod picture;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -17,9 +18,9 @@ use eframe::egui::epaint::{ClippedShape, PaintCallback, Shape, TextureId};
 use eframe::egui::{Context, FullOutput, PaintCallbackInfo, Plugin, RawInput, Rect, ViewportId};
 use eframe::egui_glow::{CallbackFn, Painter};
 
-use areas::{areas, joined, on_pixels, within};
 #[cfg(not(target_arch = "wasm32"))]
 pub(super) use framebuffer::{Framebuffer, has_graphics_card};
+use picture::Picture;
 
 /// A canvas that keeps its picture from one frame to the next.
 pub(super) trait Canvas: Send + Sync + 'static {
@@ -58,13 +59,6 @@ pub(super) struct Damage {
     drawn: Arc<AtomicU64>,
 }
 
-/// The shapes of one frame.
-struct Picture {
-    shapes: Vec<ClippedShape>,
-    screen: Rect,
-    pixels_per_point: f32,
-}
-
 impl Damage {
     /// Draws on this canvas.
     pub(super) fn new(canvas: impl Canvas) -> Self {
@@ -90,21 +84,16 @@ impl Damage {
     /// Replaces the shapes of a frame of the main window by those to draw.
     fn draw_changes(&mut self, ctx: &Context, output: &mut FullOutput) {
         let (screen, pixels_per_point) = (ctx.viewport_rect(), output.pixels_per_point);
-        let shapes = std::mem::take(&mut output.shapes);
-        let picture = Picture { shapes, screen, pixels_per_point };
         self.note_drawn();
+        let shapes = std::mem::take(&mut output.shapes);
         let changed: Vec<TextureId> = output.textures_delta.set.keys().copied().collect();
-        let known =
-            self.shown.as_ref().filter(|it| it.screen == screen && it.pixels_per_point == pixels_per_point);
-        let needs_picture = known.is_some();
-        let areas = match known {
-            Some(shown) => areas(&shown.shapes, &picture.shapes, &changed),
-            None => vec![Rect::EVERYTHING],
-        };
-        let areas = joined(areas.into_iter().map(|area| on_pixels(area.intersect(screen), pixels_per_point)));
+        let shown = self.shown.as_ref();
+        let picture = Picture::new(shapes, (screen, pixels_per_point), shown, &changed);
+        let needs_picture = shown.is_some_and(|shown| picture.fits(shown));
+        let areas = picture.differences(shown);
         self.number += 1;
         output.shapes.push(self.begin(ctx, screen, needs_picture));
-        output.shapes.extend(within(&picture.shapes, &areas));
+        output.shapes.extend(picture.within(&areas));
         output.shapes.push(self.end(screen));
         self.latest = Some(picture);
     }
