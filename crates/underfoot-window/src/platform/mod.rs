@@ -58,10 +58,12 @@ pub use desktop::files::{texts_beside, usual_state};
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(not(target_arch = "wasm32"), allow(dead_code, reason = "a desktop has the files already"))]
 pub(crate) enum Arrival {
-    /// A layout to open.
+    /// A layout to open, which has its file.
     Layout(PathBuf),
-    /// So many kinds of controls and effects, which now lie beside the layouts.
-    Parts(usize),
+    /// The text of a layout to keep at this path and open, if it can be read.
+    LayoutText(PathBuf, String),
+    /// The texts of kinds of controls and of effects to keep at these paths, beside the layouts, if they can be read.
+    Parts(Vec<(PathBuf, String)>),
     /// The reason why a file did not come.
     Refused(String),
     /// A message of the page about a file.

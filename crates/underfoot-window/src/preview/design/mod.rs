@@ -3,6 +3,7 @@
 //! [`crate::edit`] defines the meaning of edits and the bytes that they change; this module holds the display and the
 //! input.
 
+mod arrivals;
 mod bar;
 mod canvas;
 mod changes;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Key, Ui};
 
 use super::{Designer, Pane};
-use crate::platform::{self, Arrival};
+use crate::platform;
 use crate::preview::feed::{LayoutCause, PreviewCommand, Warnings};
 use crate::preview::floor_view::FloorFeet;
 use crate::preview::messages::FileNote;
@@ -65,25 +65,8 @@ impl Designer {
         if let Some(dropped) = ui.input(|i| i.raw.dropped_files.first().cloned()) {
             self.storage.inbox.take_dropped(&dropped);
         }
-        match self.storage.inbox.next(ui.ctx()) {
-            Some(Arrival::Layout(path)) if self.open(&path) => self.try_layout(shown, LayoutCause::Opened),
-            Some(Arrival::Layout(_)) => {
-                if let Some(message) = &self.edited.message {
-                    shown.messages.note(message.text.clone());
-                }
-            }
-            Some(Arrival::Parts(count)) => {
-                let parts = if count == 1 {
-                    "1 kind or effect is"
-                } else {
-                    &format!("{count} kinds and effects are")
-                };
-                shown.messages.note(format!("{parts} beside the layouts now"));
-                shown.messages.files_changed = true;
-            }
-            Some(Arrival::Refused(text) | Arrival::Told(text)) => shown.messages.note(text),
-            None => {}
-        }
+        let next = self.storage.inbox.next(ui.ctx());
+        self.receive_file(shown, next);
         if std::mem::take(&mut shown.messages.files_changed) {
             self.take_in_files(shown);
         }
