@@ -12,6 +12,7 @@
 //! | `texts_beside` | the texts in a folder | entries of the storage |
 //! | `repeat` | a thread | the frames of the page |
 //! | `put_report` | a file | a name in the page |
+//! | `has_coarse_pointer` | false | as the browser says |
 
 #[cfg(target_arch = "wasm32")]
 mod browser;
@@ -37,7 +38,7 @@ pub(crate) use browser::{
     inbox::{FileInbox, GIVES, give, note_saved},
     lock::FolderLock,
     repeat::repeat,
-    screen::{put_report, report_place},
+    screen::{has_coarse_pointer, put_report, report_place},
 };
 #[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 pub(crate) use desktop::{
@@ -45,7 +46,7 @@ pub(crate) use desktop::{
     inbox::{FileInbox, GIVES, give, note_saved},
     lock::FolderLock,
     repeat::repeat,
-    screen::{put_report, report_place},
+    screen::{has_coarse_pointer, put_report, report_place},
 };
 
 #[cfg(all(feature = "window", target_arch = "wasm32"))]

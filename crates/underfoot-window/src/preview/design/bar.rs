@@ -13,6 +13,7 @@ use crate::platform;
 use crate::preview::bars::{MessageStack, message_frame};
 use crate::preview::feed::LayoutCause;
 use crate::preview::gallery::LayoutGallery;
+use crate::preview::handheld::{is_for_fingers, menu_content};
 use crate::preview::icons::{self, Icon, icon_button};
 use crate::preview::shown::ShownFloor;
 use crate::preview::style::{is_entered, quiet, toggle};
@@ -26,6 +27,9 @@ type Action = fn(&mut EditedLayout);
 impl Designer {
     /// Shows files, undo, arrangement and the number of problems, in the top bar.
     pub(in crate::preview) fn tools(&mut self, ui: &mut Ui, theme: &Theme, gallery: &mut LayoutGallery) {
+        if is_for_fingers(ui) {
+            toggle(ui, &mut self.panes.shows_things, "Add", "Things to put down on the floor");
+        }
         self.files(ui, gallery);
         let (can_undo, can_redo) = (self.edited.document.can_undo(), self.edited.document.can_redo());
         let any = !self.edited.selected.is_empty();
@@ -46,8 +50,10 @@ impl Designer {
         }
         self.arrange(ui);
         ui.menu_button("Show", |ui| {
-            ui.checkbox(&mut self.canvas.scale.shoes, "Shoes in true size");
-            ui.checkbox(&mut self.canvas.scale.reach, "How far feet reach");
+            menu_content(ui, |ui| {
+                ui.checkbox(&mut self.canvas.scale.shoes, "Shoes in true size");
+                ui.checkbox(&mut self.canvas.scale.reach, "How far feet reach");
+            });
         });
         let hint = "see the whole floor; the wheel zooms, Space and drag moves";
         if icon_button(ui, true, Icon::Maximize, "Fit", hint) {
@@ -72,58 +78,60 @@ impl Designer {
     }
 
     fn files(&mut self, ui: &mut Ui, gallery: &mut LayoutGallery) {
-        ui.menu_button("File", |ui| {
-            ui.menu_button("New", |ui| {
-                let geometry = self.edited.document.floor().geometry;
-                ui.label(format!("for a floor of {} x {} tiles", geometry.columns(), geometry.rows()))
-                    .on_hover_text(
-                        "The window's floor; underfoot preview --grid 8x4 opens it with another one",
-                    );
-                for template in Template::ALL {
-                    if ui.button(template.name()).clicked() {
-                        let text = template.text(&self.edited.document.floor().geometry);
-                        self.begin_untitled("untitled.ron", &text);
+        ui.menu_button("File", |ui| menu_content(ui, |ui| self.file_menu(ui, gallery)));
+        let can_save = !self.is_saved() || self.storage.file.path().is_none() || self.storage.file.is_new();
+        if icons::icon_button(ui, can_save, Icon::Save, "Save", "Ctrl+S") {
+            self.save();
+        }
+    }
+
+    fn file_menu(&mut self, ui: &mut Ui, gallery: &mut LayoutGallery) {
+        ui.menu_button("New", |ui| {
+            let geometry = self.edited.document.floor().geometry;
+            ui.label(format!("for a floor of {} x {} tiles", geometry.columns(), geometry.rows()))
+                .on_hover_text(
+                    "The window's floor; underfoot preview --grid 8x4 opens it with another one",
+                );
+            for template in Template::ALL {
+                if ui.button(template.name()).clicked() {
+                    let text = template.text(&self.edited.document.floor().geometry);
+                    self.begin_untitled("untitled.ron", &text);
+                    ui.close();
+                }
+            }
+        });
+        if ui.add_enabled(!gallery.is_empty(), egui::Button::new("Gallery")).clicked() {
+            gallery.open();
+            ui.close();
+        }
+        let recent = shelf::recent(&self.storage.state);
+        ui.add_enabled_ui(!recent.is_empty(), |ui| {
+            ui.menu_button("Open recent", |ui| {
+                for path in &recent {
+                    let name = path.file_name().unwrap_or_default().to_string_lossy();
+                    if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                        self.open(path);
                         ui.close();
                     }
                 }
             });
-            if ui.add_enabled(!gallery.is_empty(), egui::Button::new("Gallery")).clicked() {
-                gallery.open();
-                ui.close();
-            }
-            let recent = shelf::recent(&self.storage.state);
-            ui.add_enabled_ui(!recent.is_empty(), |ui| {
-                ui.menu_button("Open recent", |ui| {
-                    for path in &recent {
-                        let name = path.file_name().unwrap_or_default().to_string_lossy();
-                        if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                            self.open(path);
-                            ui.close();
-                        }
-                    }
-                });
-            });
-            for (to, name, keys) in
-                [(Ask::Open, "Open file", "Ctrl+O"), (Ask::SaveAs, "Save as", "Ctrl+Shift+S")]
-            {
-                if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
-                    match to {
-                        Ask::Open => self.ask_to_open(),
-                        Ask::SaveAs => self.ask_for(Ask::SaveAs),
-                    }
-                    ui.close();
-                }
-            }
-            if platform::GIVES && ui.button("Download").clicked() {
-                if let Err(wrong) = platform::give(&self.name(), &self.file_text()) {
-                    self.edited.complain(format!("the browser takes no file: {wrong}"));
-                }
-                ui.close();
-            }
         });
-        let can_save = !self.is_saved() || self.storage.file.path().is_none() || self.storage.file.is_new();
-        if icons::icon_button(ui, can_save, Icon::Save, "Save", "Ctrl+S") {
-            self.save();
+        for (to, name, keys) in
+            [(Ask::Open, "Open file", "Ctrl+O"), (Ask::SaveAs, "Save as", "Ctrl+Shift+S")]
+        {
+            if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
+                match to {
+                    Ask::Open => self.ask_to_open(),
+                    Ask::SaveAs => self.ask_for(Ask::SaveAs),
+                }
+                ui.close();
+            }
+        }
+        if platform::GIVES && ui.button("Download").clicked() {
+            if let Err(wrong) = platform::give(&self.name(), &self.file_text()) {
+                self.edited.complain(format!("the browser takes no file: {wrong}"));
+            }
+            ui.close();
         }
     }
 
@@ -134,7 +142,7 @@ impl Designer {
         let is_group = matches!(items[..], [item] if item.is_group);
         let count = areas.len();
         ui.add_enabled_ui(count > 0, |ui| {
-            ui.menu_button("Arrange", |ui| {
+            ui.menu_button("Arrange", |ui| menu_content(ui, |ui| {
                 let entries: [(bool, &str, &str, Action); 7] = [
                     (count > 1, "Make alike", "Ctrl+E", EditedLayout::make_alike),
                     (count > 0, "Group", "Ctrl+G", EditedLayout::group),
@@ -173,7 +181,7 @@ impl Designer {
                         }
                     }
                 });
-            });
+            }));
         });
         if let Some(does) = does {
             does(&mut self.edited);

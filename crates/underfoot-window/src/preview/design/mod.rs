@@ -114,6 +114,8 @@ struct Panes {
     is_led: bool,
     /// Whether the window shows one panel at a time, at the right.
     is_narrow: bool,
+    /// Whether the list of things is open, in a window in a hand.
+    shows_things: bool,
 }
 
 impl Panes {

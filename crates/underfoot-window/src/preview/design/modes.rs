@@ -141,15 +141,14 @@ impl Designer {
         let [things, fields, text] = self.panes_on_display(stage);
         if things {
             let canvas = &mut self.canvas;
-            self.things.panel(ui, theme, palette, &mut self.edited, canvas, &mut self.panes);
+            self.things.panel(ui, theme, palette, &mut self.edited, canvas, &mut self.panes, stage);
         }
         if fields {
-            let widest = stage.widest();
-            self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes, widest);
+            self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes, stage);
         }
         stage.note(ui.available_rect_before_wrap());
         if text {
-            self.text.panel(ui, theme, &mut self.edited, &mut self.panes, stage.widest());
+            self.text.panel(ui, theme, &mut self.edited, &mut self.panes, stage);
         }
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
@@ -178,6 +177,12 @@ impl Designer {
         if stage.is_wide() {
             return [true, stage.has_side || pane == Some(Pane::Fields), text];
         }
+        if stage.sheet().is_some() {
+            // A thing in hand goes onto the floor.
+            let puts_down = self.canvas.placing.is_some();
+            let [things, fields] = [self.panes.shows_things && !puts_down, stage.has_side];
+            return [things, fields && !things, text && !fields && !things];
+        }
         let is_selected = !self.edited.selected.is_empty();
         match pane {
             Some(Pane::Things | Pane::Floor) => [true, false, false],
@@ -185,6 +190,11 @@ impl Designer {
             _ if text => [false, false, true],
             _ => [!is_selected, is_selected && stage.has_side, false],
         }
+    }
+
+    /// Whether the list of things and the text are open, in a window in a hand.
+    pub(in crate::preview) fn sheets(&mut self) -> [&mut bool; 2] {
+        [&mut self.panes.shows_things, &mut self.text.is_open]
     }
 
     /// Selects the control that a foot used last, if it has used another one since the last time.

@@ -11,6 +11,7 @@ use super::chart::{Chart, PlotLine, ThresholdDrag, ThresholdPair};
 use super::series::{Series, Unit};
 use super::{MOST, Plots, SPANS};
 use crate::preview::design::{Designer, Threshold, set_threshold};
+use crate::preview::handheld::{PanelSheet, panel_at};
 use crate::preview::selection::Selection;
 use crate::preview::shown::ShownFloor;
 use crate::preview::style::{panel_frame, quiet, toggle};
@@ -37,6 +38,7 @@ impl Plots {
         shown: &ShownFloor,
         selection: &Selection,
         designer: Option<&mut Designer>,
+        sheet: Option<PanelSheet>,
     ) {
         if !self.is_open {
             return;
@@ -44,8 +46,10 @@ impl Plots {
         let selected = selection.control_of(shown.layout()).map(|widget| widget.id.clone());
         let frame = panel_frame(theme, Margin { left: 14, right: 14, top: 6, bottom: 6 });
         let most = (0.6 * ui.available_height()).max(121.0);
-        let panel = Panel::bottom("plots").frame(frame).resizable(true);
-        panel.default_size(210.0).size_range(120.0..=most).show(ui, |ui| {
+        let panel = panel_at(sheet, || {
+            Panel::bottom("plots").resizable(true).default_size(210.0).size_range(120.0..=most)
+        });
+        panel.frame(frame).show(ui, |ui| {
             self.strip(ui, theme, shown, selected.as_ref());
             self.charts(ui, theme, shown, selected, designer);
         });
