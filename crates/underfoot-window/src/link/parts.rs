@@ -145,8 +145,10 @@ mod tests {
     use super::*;
 
     fn texts(kinds: &[(&str, &str)], effects: &[(&str, &str)]) -> SharedLayout {
-        let map = |all: &[(&str, &str)]| all.iter().map(|(file, text)| (format!("{file}.ron"), (*text).into()));
-        SharedLayout { kinds: map(kinds).collect(), effects: map(effects).collect(), ..SharedLayout::default() }
+        let map = |all: &[(&str, &str)]| {
+            all.iter().map(|(file, text)| (format!("{file}.ron"), (*text).to_owned())).collect()
+        };
+        SharedLayout { kinds: map(kinds), effects: map(effects), ..SharedLayout::default() }
     }
 
     fn read(stored: &SharedLayout, new: &SharedLayout) -> ReadableParts {

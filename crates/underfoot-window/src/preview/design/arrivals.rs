@@ -10,7 +10,7 @@ use crate::link::{EFFECTS, KINDS, ReadableParts, SharedLayout};
 use crate::platform::{self, Arrival};
 use crate::preview::feed::LayoutCause;
 use crate::preview::shown::ShownFloor;
-use underfoot::schema::{Diagnostics, Effects};
+use underfoot::schema::{Diagnostic, Diagnostics, Effects};
 
 /// Maximum number of refused files of which one message shows the problems.
 const MOST_TOLD: usize = 3;
@@ -139,8 +139,10 @@ fn refusal(path: &str, wrong: &str) -> String {
 
 /// The problems of the file at `path`, which were found by its name alone.
 fn placed_problems(problems: &Diagnostics, path: &str) -> String {
-    let at = |problem: &underfoot::schema::Diagnostic| {
-        underfoot::schema::Diagnostic { path: path.to_owned(), ..problem.clone() }.to_string()
+    let at = |problem: &Diagnostic| {
+        let mut placed = problem.clone();
+        path.clone_into(&mut placed.path);
+        placed.to_string()
     };
     problems.iter().map(at).collect()
 }
