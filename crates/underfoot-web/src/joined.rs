@@ -113,7 +113,8 @@ impl JoinedFloor {
         };
         if let Some(shared) = shared {
             let SharedLayout { name, text, .. } = shared;
-            let read = shared.all_kinds().and_then(|kinds| Document::read(name, text, &Arc::new(kinds), &floor));
+            let read =
+                shared.all_kinds().and_then(|kinds| Document::read(name, text, &Arc::new(kinds), &floor));
             match read {
                 Ok(_) => (design.name, design.text) = (name.clone(), text.clone()),
                 Err(problems) => {

@@ -158,7 +158,7 @@ async function comesWithin(soon, frame, check) {
 
 /// A layout with a kind of its own, whatever lies beside it.
 const SOUND = `Layout(version: 1, title: "sound", regions: [(id: "all", at: (0, 0), size: (6, 6))],
-  kinds: [Kind(name: "own", behaviour: Button)], widgets: [(id: "one", kind: "own", label: "Sound", at: (2, 2), size: (1, 1))])`;
+  kinds: [Kind(name: "own", behaviour: Button, press_n: 60, release_n: 40)], widgets: [(id: "one", kind: "own", label: "Sound", at: (2, 2), size: (1, 1))])`;
 
 /// Whether a sound layout opens beside all that the cases have left behind.
 async function opensSoundLayout(soon, name) {

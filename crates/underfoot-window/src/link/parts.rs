@@ -98,7 +98,9 @@ impl ReadableParts {
                 if !is_good {
                     self.refuse(KINDS, file, own);
                     // The last good state stays.
-                    back.extend(stored.get(*file).map(|old| (*file, old.as_str())).filter(|(_, old)| old != text));
+                    back.extend(
+                        stored.get(*file).map(|old| (*file, old.as_str())).filter(|(_, old)| old != text),
+                    );
                 }
                 is_good
             });
@@ -158,7 +160,11 @@ mod tests {
     /// The files that cannot be read, each with the first line of its problems.
     fn refused(parts: &ReadableParts) -> Vec<String> {
         let first = |part: &UnreadablePart| part.problems.iter().next().map(|problem| problem.line);
-        parts.unreadable.iter().map(|part| format!("{}/{} {:?}", part.folder, part.file, first(part))).collect()
+        parts
+            .unreadable
+            .iter()
+            .map(|part| format!("{}/{} {:?}", part.folder, part.file, first(part)))
+            .collect()
     }
 
     const THUD: &str = r#"Effect(name: "thud", about: "A low one", plays: Click(level_n: 9, modes: [(hz: 90, decay_ms: 30)]))"#;
@@ -198,8 +204,10 @@ mod tests {
 
     #[test]
     fn the_later_of_two_kinds_with_one_name_is_refused_whatever_its_file_is_called() {
-        let (stored, new) =
-            (texts(&[("z", r#"Kind(name: "big", from: "button")"#)], &[]), texts(&[("a", r#"Kind(name: "big", from: "slider")"#)], &[]));
+        let (stored, new) = (
+            texts(&[("z", r#"Kind(name: "big", from: "button")"#)], &[]),
+            texts(&[("a", r#"Kind(name: "big", from: "slider")"#)], &[]),
+        );
         let parts = read(&stored, &new);
         assert_eq!(refused(&parts), ["widgets/a.ron Some(1)"]);
         assert_eq!(parts.texts.kinds.keys().collect::<Vec<_>>(), ["z.ron"]);

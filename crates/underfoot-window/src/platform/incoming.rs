@@ -45,7 +45,8 @@ fn record_name(text: &str) -> &str {
         };
         rest = behind.unwrap_or("").trim_start();
     }
-    let end = rest.find(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_').unwrap_or(rest.len());
+    let end =
+        rest.find(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_').unwrap_or(rest.len());
     rest.get(..end).unwrap_or("")
 }
 

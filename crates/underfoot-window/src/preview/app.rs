@@ -12,7 +12,7 @@ use super::feed::PreviewInput;
 use super::floor_check::FloorCheck;
 use super::floor_view::{FloorFeet, FloorPane, OnFloor};
 use super::focus::FocusRing;
-use super::fold::UnfoldedPanels;
+use super::fold::{UnfoldedPanels, fit_hand, show_lower_bars};
 use super::handheld::{HoldWatch, WindowHold};
 use super::lookout;
 use super::messages::{Happened, WindowMessages};
@@ -196,7 +196,7 @@ impl App {
     /// Draws one frame.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.go_on(ui.ctx());
-        self.fit_hand(ui.ctx());
+        fit_hand(self, ui.ctx());
         self.receive(ui);
         self.handle_keys(ui);
         self.follow_steps(ui);
@@ -207,7 +207,7 @@ impl App {
         self.show_top_bar(ui);
         self.show_gallery(ui);
         let theme = self.appearance.theme();
-        self.show_lower_bars(ui, &theme);
+        show_lower_bars(self, ui, &theme);
         if let Some(line) = &mut self.time_line {
             line.show(ui, &theme);
         }
@@ -282,7 +282,9 @@ impl App {
         self.show_visit_bar(ui, &theme);
         let designer = self.designer.as_mut();
         self.plots.show(ui, &theme, &self.shown, &self.selection, designer, stage.sheet());
-        let (frame, has_steps) = (egui::Frame::new(), self.has_steps());
+        // An open panel leaves a window in a hand no room for them.
+        let has_steps = self.has_steps() && !self.window.unfolded.is_any();
+        let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
             stage.canvas = ui.available_rect_before_wrap();
             let on_floor = OnFloor {

@@ -17,58 +17,65 @@ pub(super) struct UnfoldedPanels {
     are_open: [bool; 5],
 }
 
-impl App {
-    /// Fits buttons and panels to how the window is held.
-    pub(super) fn fit_hand(&mut self, ctx: &Context) {
-        self.window.hold = self.window.hold_watch.follow(ctx);
-        let is_in_hand = self.window.hold.is_in_hand();
-        self.appearance.fit(ctx, is_in_hand);
-        let folds = self.window.hold.sheet(ctx.content_rect()).is_some();
-        self.panel.is_folded = folds;
-        if folds {
-            self.fold();
+impl UnfoldedPanels {
+    /// Whether a panel is open.
+    pub(super) fn is_any(self) -> bool {
+        self.are_open.contains(&true)
+    }
+}
+
+/// Fits buttons and panels to how the window is held.
+pub(super) fn fit_hand(app: &mut App, ctx: &Context) {
+    app.window.hold = app.window.hold_watch.follow(ctx);
+    let is_in_hand = app.window.hold.is_in_hand();
+    app.appearance.fit(ctx, is_in_hand);
+    let folds = app.window.hold.sheet(ctx.content_rect()).is_some();
+    app.panel.is_folded = folds;
+    if folds {
+        fold(app);
+    } else {
+        app.window.unfolded = UnfoldedPanels::default();
+    }
+}
+
+/// Leaves the panel open that was opened last; in another mode, all are closed.
+fn fold(app: &mut App) {
+    let before = app.window.unfolded;
+    let designs = app.is_designing();
+    let mut are_open: [bool; 5] = panels(app).map(|open| open.is_some_and(|open| *open));
+    let newest = (0..are_open.len()).find(|panel| are_open[*panel] && !before.are_open[*panel]);
+    if designs != before.designs {
+        are_open = [false; 5];
+    } else if let Some(newest) = newest {
+        are_open = std::array::from_fn(|panel| panel == newest);
+    }
+    for (panel, is_open) in panels(app).into_iter().zip(are_open) {
+        if let Some(panel) = panel {
+            *panel = is_open;
         }
     }
+    app.window.unfolded = UnfoldedPanels { designs, are_open };
+}
 
-    /// Leaves the panel open that was opened last; in another mode, all are closed.
-    fn fold(&mut self) {
-        let before = self.window.unfolded;
-        let designs = self.is_designing();
-        let mut are_open: [bool; 5] = self.panels().map(|open| open.is_some_and(|open| *open));
-        let newest = (0..are_open.len()).find(|panel| are_open[*panel] && !before.are_open[*panel]);
-        if designs != before.designs {
-            are_open = [false; 5];
-        } else if let Some(newest) = newest {
-            are_open = std::array::from_fn(|panel| panel == newest);
-        }
-        for (panel, is_open) in self.panels().into_iter().zip(are_open) {
-            if let Some(panel) = panel {
-                *panel = is_open;
-            }
-        }
-        self.window.unfolded = UnfoldedPanels { designs, are_open };
+/// Whether each panel is open, if the window has it.
+fn panels(app: &mut App) -> [Option<&mut bool>; 5] {
+    let [things, text] = app.designer.as_mut().map_or([None, None], |designer| designer.sheets().map(Some));
+    [
+        Some(app.panel.wanted.get_or_insert(false)),
+        app.tuner.as_mut().map(|tuner| &mut tuner.is_open),
+        Some(&mut app.plots.is_open),
+        things,
+        text,
+    ]
+}
+
+/// Shows the bars below the floor; a window in a hand has no keys to explain, and a low one no room for figures.
+pub(super) fn show_lower_bars(app: &mut App, ui: &mut Ui, theme: &Theme) {
+    let is_in_hand = app.window.hold.is_in_hand();
+    if !is_in_hand || ui.ctx().content_rect().height() >= TALL {
+        app.status.show(ui, theme, &app.shown);
     }
-
-    /// Whether each panel is open, if the window has it.
-    fn panels(&mut self) -> [Option<&mut bool>; 5] {
-        let [things, text] = self.designer.as_mut().map_or([None, None], |designer| designer.sheets().map(Some));
-        [
-            Some(self.panel.wanted.get_or_insert(false)),
-            self.tuner.as_mut().map(|tuner| &mut tuner.is_open),
-            Some(&mut self.plots.is_open),
-            things,
-            text,
-        ]
-    }
-
-    /// Shows the bars below the floor; a window in a hand has no keys to explain, and a low one no room for figures.
-    pub(super) fn show_lower_bars(&mut self, ui: &mut Ui, theme: &Theme) {
-        let is_in_hand = self.window.hold.is_in_hand();
-        if !is_in_hand || ui.ctx().content_rect().height() >= TALL {
-            self.status.show(ui, theme, &self.shown);
-        }
-        if !is_in_hand {
-            help_bar(ui, theme, self.activity());
-        }
+    if !is_in_hand {
+        help_bar(ui, theme, app.activity());
     }
 }

@@ -8,6 +8,12 @@ use crate::platform;
 /// Side of a target for a finger, in points: a finger tip covers some 9 mm, and 44 points of a phone are 7 to 9 mm.
 pub(super) const TARGET: f32 = 44.0;
 
+/// Room around the icon of a button for fingers, whose width is then that of a target, in points.
+const ICON_PADDING: egui::Vec2 = vec2(15.1, 4.0);
+
+/// Room beside the word of a button for fingers, in points.
+const WORD_PADDING: f32 = 11.5;
+
 /// Width below which a window counts as one in a hand, in points: phones that are held upright have 320 to 480.
 const NARROW: f32 = 600.0;
 
@@ -67,9 +73,8 @@ impl Default for HoldWatch {
 impl HoldWatch {
     /// How the window is held in this frame. A window that a finger has touched stays one for fingers.
     pub(super) fn follow(&mut self, ctx: &Context) -> WindowHold {
-        let (comes, is_down) = ctx.input(|i| {
-            (i.events.iter().any(|event| matches!(event, Event::Touch { .. })), i.any_touches())
-        });
+        let (comes, is_down) = ctx
+            .input(|i| (i.events.iter().any(|event| matches!(event, Event::Touch { .. })), i.any_touches()));
         self.was_touched |= comes;
         // Nothing moves under a finger.
         self.is_touched |= self.was_touched && !is_down && !comes;
@@ -109,7 +114,7 @@ pub(super) fn fit_targets(ctx: &Context, for_fingers: bool) {
     ctx.all_styles_mut(|style| {
         let spacing = &mut style.spacing;
         spacing.interact_size.y = if for_fingers { TARGET } else { usual.interact_size.y };
-        spacing.button_padding = if for_fingers { vec2(15.5, 4.0) } else { super::style::BUTTON_PADDING };
+        spacing.button_padding = if for_fingers { ICON_PADDING } else { super::style::BUTTON_PADDING };
         spacing.icon_width = if for_fingers { 22.0 } else { usual.icon_width };
         spacing.icon_width_inner = if for_fingers { 13.0 } else { usual.icon_width_inner };
     });
@@ -120,12 +125,25 @@ pub(super) fn is_for_fingers(ui: &Ui) -> bool {
     ui.spacing().interact_size.y >= TARGET
 }
 
+/// Shows a button with a word, whose sides are nearer to it than those of an icon where fingers use it.
+pub(super) fn with_word<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let usual = ui.spacing().button_padding.x;
+    if is_for_fingers(ui) {
+        ui.spacing_mut().button_padding.x = WORD_PADDING;
+    }
+    let shown = add(ui);
+    ui.spacing_mut().button_padding.x = usual;
+    shown
+}
+
 /// Shows the content of a menu, which scrolls where it is higher than a screen for fingers.
 pub(super) fn menu_content<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
     if !is_for_fingers(ui) {
         return add(ui);
     }
     let most = ui.ctx().content_rect().height() - TARGET;
+    // Otherwise a menu has the usual height of an area.
+    ui.set_max_height(most);
     ScrollArea::vertical().max_height(most).show(ui, add).inner
 }
 

@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{
-    self, Color32, Modal, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2,
-};
+use eframe::egui::{self, Color32, Modal, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 use qrcodegen::{Mask, QrCode, QrCodeEcc, QrSegment, Version};
 
 use super::handheld::is_for_fingers;
@@ -169,7 +167,8 @@ impl GivenLink {
         ui.horizontal(|ui| {
             let mut text = link.as_str();
             let width = if is_for_fingers(ui) { ui.available_width() - COPY } else { CODE - 30.0 };
-            let field = ui.add(TextEdit::singleline(&mut text).desired_width(width));
+            let field =
+                ui.add(TextEdit::singleline(&mut text).desired_width(width).align(egui::Align2::LEFT_CENTER));
             field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Link"));
             let copy = named(ui.button(short(Icon::Copy, "Copy", false)), "Copy");
             if ui.memory(|memory| memory.focused().is_none()) {

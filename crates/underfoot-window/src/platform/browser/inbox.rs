@@ -98,7 +98,8 @@ impl Door {
                 match text_of(&path, &file).await {
                     Ok(text) if length + text.len() > MOST_TEXT => {
                         let most = MOST_TEXT >> 20;
-                        let wrong = format!("{path} and what follows is not opened: it is more than {most} MB");
+                        let wrong =
+                            format!("{path} and what follows is not opened: it is more than {most} MB");
                         door.give(Arrival::Refused(wrong));
                         break;
                     }

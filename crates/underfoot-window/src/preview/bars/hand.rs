@@ -17,68 +17,66 @@ const GAP: f32 = 3.0;
 /// Least and greatest width of the title, in points.
 const TITLE: (f32, f32) = (64.0, 280.0);
 
-impl App {
-    /// Shows the bar: modes, title, appearance and help in the first line, and the tools of the mode below it.
-    pub(super) fn hand_bar(&mut self, ui: &mut Ui, theme: &Theme) {
-        let frame = panel_frame(theme, Margin::symmetric(4, 4));
-        Panel::top("top bar").frame(frame).resizable(false).show(ui, |ui| {
-            ui.spacing_mut().item_spacing = vec2(GAP, GAP);
-            ui.horizontal(|ui| {
-                self.mode_switch(ui, true);
-                let room = ui.available_width() - self.top_bar.end_width - 2.0 * GAP;
-                self.hand_title(ui, theme, room.clamp(TITLE.0, TITLE.1));
-                self.hand_end(ui, theme);
-            });
-            ui.horizontal_wrapped(|ui| {
-                match &mut self.designer {
-                    Some(designer) if designer.is_open => {
-                        designer.tools(ui, theme, &mut self.top_bar.gallery);
-                        designer.put_button(ui, &self.shown);
-                        self.share_button(ui, true);
-                        self.panel.button(ui, true, true);
-                    }
-                    _ => self.try_tools(ui, theme, true),
-                }
-                mutes(ui, theme, &self.shown, self.rehearsal.as_ref());
-                let is_recorded = self.time_line.is_some();
-                // A floor that works needs no words.
-                if is_recorded || self.shown.snapshot().link != LinkState::Live {
-                    link_state(ui, theme, &self.shown, is_recorded);
-                }
-            });
+/// Shows the bar: modes, title, appearance and help in the first line, and the tools of the mode below it.
+pub(super) fn hand_bar(app: &mut App, ui: &mut Ui, theme: &Theme) {
+    let frame = panel_frame(theme, Margin::symmetric(4, 4));
+    Panel::top("top bar").frame(frame).resizable(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing = vec2(GAP, GAP);
+        ui.horizontal(|ui| {
+            app.mode_switch(ui, true);
+            let room = ui.available_width() - app.top_bar.end_width - 2.0 * GAP;
+            title(app, ui, theme, room.clamp(TITLE.0, TITLE.1));
+            end(app, ui, theme);
         });
-    }
-
-    /// The title of the layout, or in Design mode the name of its file.
-    fn hand_title(&mut self, ui: &mut Ui, theme: &Theme, width: f32) {
-        let size = vec2(width, TARGET);
-        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-            ui.set_min_size(size);
-            ui.set_max_width(width);
-            match self.designer.as_ref().filter(|designer| designer.is_open) {
-                Some(designer) => {
-                    ui.add_space(GAP);
-                    file_name(ui, theme, designer);
+        ui.horizontal_wrapped(|ui| {
+            match &mut app.designer {
+                Some(designer) if designer.is_open => {
+                    designer.tools(ui, theme, &mut app.top_bar.gallery);
+                    designer.put_button(ui, &app.shown);
+                    app.share_button(ui, true);
+                    app.panel.button(ui, true, true);
                 }
-                None => self.top_bar.title(ui, theme, &self.shown.layout().title, width),
+                _ => app.try_tools(ui, theme, true),
+            }
+            mutes(ui, theme, &app.shown, app.rehearsal.as_ref());
+            let is_recorded = app.time_line.is_some();
+            // A floor that works needs no words.
+            if is_recorded || app.shown.snapshot().link != LinkState::Live {
+                link_state(ui, theme, &app.shown, is_recorded);
             }
         });
-    }
+    });
+}
 
-    /// Appearance and help, at the right end of the line.
-    fn hand_end(&mut self, ui: &mut Ui, theme: &Theme) {
-        let room = ui.available_width() - self.top_bar.end_width;
-        if room > 0.0 {
-            ui.add_space(room - GAP.min(room));
+/// The title of the layout, or in Design mode the name of its file.
+fn title(app: &mut App, ui: &mut Ui, theme: &Theme, width: f32) {
+    let size = vec2(width, TARGET);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_size(size);
+        ui.set_max_width(width);
+        match app.designer.as_ref().filter(|designer| designer.is_open) {
+            Some(designer) => {
+                ui.add_space(GAP);
+                file_name(ui, theme, designer);
+            }
+            None => app.top_bar.title(ui, theme, &app.shown.layout().title, width),
         }
-        let left = ui.cursor().left();
-        self.appearance.menu(ui, true, &mut self.shown.messages);
-        let (activity, set_up) = (self.activity(), self.window.options.set_up);
-        help_menu(ui, theme, activity, true, &mut self.appearance, set_up, &mut self.shown.messages);
-        let width = ui.min_rect().right() - left;
-        if (width - self.top_bar.end_width).abs() > 0.5 {
-            self.top_bar.end_width = width;
-            ui.ctx().request_repaint();
-        }
+    });
+}
+
+/// Appearance and help, at the right end of the line.
+fn end(app: &mut App, ui: &mut Ui, theme: &Theme) {
+    let room = ui.available_width() - app.top_bar.end_width;
+    if room > 0.0 {
+        ui.add_space(room - GAP.min(room));
+    }
+    let left = ui.cursor().left();
+    app.appearance.menu(ui, true, &mut app.shown.messages);
+    let (activity, set_up) = (app.activity(), app.window.options.set_up);
+    help_menu(ui, theme, activity, true, &mut app.appearance, set_up, &mut app.shown.messages);
+    let width = ui.min_rect().right() - left;
+    if (width - app.top_bar.end_width).abs() > 0.5 {
+        app.top_bar.end_width = width;
+        ui.ctx().request_repaint();
     }
 }

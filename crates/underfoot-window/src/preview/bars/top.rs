@@ -3,6 +3,7 @@
 use eframe::egui;
 use eframe::egui::{Align, Layout, Margin, Panel, RichText, Ui, vec2};
 
+use super::hand::hand_bar;
 use super::help::help_menu;
 use super::pills::{link_state, mutes};
 use crate::preview::app::App;
@@ -100,7 +101,7 @@ impl App {
     pub(in crate::preview) fn show_top_bar(&mut self, ui: &mut Ui) {
         let theme = self.appearance.theme();
         if self.window.hold.is_in_hand() {
-            return self.hand_bar(ui, &theme);
+            return hand_bar(self, ui, &theme);
         }
         let frame = panel_frame(&theme, Margin::symmetric(14, 6));
         Panel::top("top bar").frame(frame).resizable(false).show(ui, |ui| {

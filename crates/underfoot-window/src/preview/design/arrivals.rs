@@ -22,85 +22,83 @@ pub(super) struct TakenParts {
     pub(super) refused: Vec<String>,
 }
 
-impl Designer {
-    /// Takes in the next file that has come, if any.
-    pub(super) fn receive_file(&mut self, shown: &mut ShownFloor, next: Option<Arrival>) {
-        match next {
-            Some(Arrival::Layout(path)) => {
-                let is_open = self.open(&path);
-                self.show_opened(shown, is_open);
-            }
-            Some(Arrival::LayoutText(path, text)) => {
-                let is_open = self.take_layout(&path, &text);
-                self.show_opened(shown, is_open);
-            }
-            Some(Arrival::Parts(parts)) => {
-                let taken = self.take_parts(parts);
-                if let Some(told) = several(&taken.refused) {
-                    shown.messages.note(told);
-                }
-                let is = match taken.kept {
-                    0 => return,
-                    1 => "1 kind or effect is",
-                    count => &format!("{count} kinds and effects are"),
-                };
-                shown.messages.note(format!("{is} beside the layouts now"));
-                shown.messages.files_changed = true;
-            }
-            Some(Arrival::Refused(text) | Arrival::Told(text)) => shown.messages.note(text),
-            None => {}
+/// Takes in the next file that has come, if any.
+pub(super) fn receive_file(designer: &mut Designer, shown: &mut ShownFloor, next: Option<Arrival>) {
+    match next {
+        Some(Arrival::Layout(path)) => {
+            let is_open = designer.open(&path);
+            show_opened(designer, shown, is_open);
         }
+        Some(Arrival::LayoutText(path, text)) => {
+            let is_open = take_layout(designer, &path, &text);
+            show_opened(designer, shown, is_open);
+        }
+        Some(Arrival::Parts(parts)) => {
+            let taken = take_parts(designer, parts);
+            if let Some(told) = several(&taken.refused) {
+                shown.messages.note(told);
+            }
+            let is = match taken.kept {
+                0 => return,
+                1 => "1 kind or effect is",
+                count => &format!("{count} kinds and effects are"),
+            };
+            shown.messages.note(format!("{is} beside the layouts now"));
+            shown.messages.files_changed = true;
+        }
+        Some(Arrival::Refused(text) | Arrival::Told(text)) => shown.messages.note(text),
+        None => {}
     }
+}
 
-    fn show_opened(&self, shown: &mut ShownFloor, is_open: bool) {
-        if is_open {
-            self.try_layout(shown, LayoutCause::Opened);
-        } else if let Some(message) = &self.edited.message {
-            shown.messages.note(message.text.clone());
-        }
+fn show_opened(designer: &Designer, shown: &mut ShownFloor, is_open: bool) {
+    if is_open {
+        designer.try_layout(shown, LayoutCause::Opened);
+    } else if let Some(message) = &designer.edited.message {
+        shown.messages.note(message.text.clone());
     }
+}
 
-    /// Keeps the text of a layout at `path` and opens it, if it can be read; returns whether it is open.
-    pub(super) fn take_layout(&mut self, path: &Path, text: &str) -> bool {
-        let name = path.display().to_string();
-        let floor = self.edited.document.floor();
-        let read = (self.storage.kinds_of)(Some(path));
-        // An empty file begins with an empty floor.
-        let problems = match text.trim().is_empty() {
-            true => None,
-            false => read.and_then(|kinds| Document::read(&name, text, &kinds, floor)).err(),
-        };
-        let kept = match problems {
-            Some(problems) => Err(problems.to_string()),
-            None => keep(path, text),
-        };
-        match kept {
-            Ok(()) => self.open(path),
-            Err(wrong) => {
-                self.edited.complain(refusal(&name, &wrong));
-                false
-            }
+/// Keeps the text of a layout at `path` and opens it, if it can be read; returns whether it is open.
+pub(super) fn take_layout(designer: &mut Designer, path: &Path, text: &str) -> bool {
+    let name = path.display().to_string();
+    let floor = designer.edited.document.floor();
+    let read = (designer.storage.kinds_of)(Some(path));
+    // An empty file begins with an empty floor.
+    let problems = match text.trim().is_empty() {
+        true => None,
+        false => read.and_then(|kinds| Document::read(&name, text, &kinds, floor)).err(),
+    };
+    let kept = match problems {
+        Some(problems) => Err(problems.to_string()),
+        None => keep(path, text),
+    };
+    match kept {
+        Ok(()) => designer.open(path),
+        Err(wrong) => {
+            designer.edited.complain(refusal(&name, &wrong));
+            false
         }
     }
+}
 
-    /// Keeps the kinds and effects among `parts` that can be read with those that are there.
-    pub(super) fn take_parts(&self, parts: Vec<(PathBuf, String)>) -> TakenParts {
-        let mut homes: BTreeMap<PathBuf, SharedLayout> = BTreeMap::new();
-        for (path, text) in parts {
-            let (folder, file) = (path.parent().unwrap_or(Path::new("")), path.file_name().unwrap_or_default());
-            let home = homes.entry(folder.parent().unwrap_or(Path::new("")).into()).or_default();
-            let is_effect = folder.file_name().is_some_and(|name| name == EFFECTS);
-            let texts = if is_effect { &mut home.effects } else { &mut home.kinds };
-            texts.insert(file.to_string_lossy().into_owned(), text);
-        }
-        let below = (self.storage.kinds_of)(None).map(|kinds| Effects::clone(kinds.effects()));
-        let below = below.unwrap_or_else(|_| Effects::builtin());
-        let mut taken = TakenParts::default();
-        for (home, new) in homes {
-            take_beside(&home, &new, &below, &mut taken);
-        }
-        taken
+/// Keeps the kinds and effects among `parts` that can be read with those that are there.
+pub(super) fn take_parts(designer: &Designer, parts: Vec<(PathBuf, String)>) -> TakenParts {
+    let mut homes: BTreeMap<PathBuf, SharedLayout> = BTreeMap::new();
+    for (path, text) in parts {
+        let (folder, file) = (path.parent().unwrap_or(Path::new("")), path.file_name().unwrap_or_default());
+        let home = homes.entry(folder.parent().unwrap_or(Path::new("")).into()).or_default();
+        let is_effect = folder.file_name().is_some_and(|name| name == EFFECTS);
+        let texts = if is_effect { &mut home.effects } else { &mut home.kinds };
+        texts.insert(file.to_string_lossy().into_owned(), text);
     }
+    let below = (designer.storage.kinds_of)(None).map(|kinds| Effects::clone(kinds.effects()));
+    let below = below.unwrap_or_else(|_| Effects::builtin());
+    let mut taken = TakenParts::default();
+    for (home, new) in homes {
+        take_beside(&home, &new, &below, &mut taken);
+    }
+    taken
 }
 
 /// Keeps the kinds and effects of `new` that can be read in the folders of `home`.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Key, Ui};
 
+use super::arrivals::receive_file;
 use super::{Designer, Pane};
 use crate::platform;
 use crate::preview::feed::{LayoutCause, PreviewCommand, Warnings};
@@ -66,7 +67,7 @@ impl Designer {
             self.storage.inbox.take_dropped(&dropped);
         }
         let next = self.storage.inbox.next(ui.ctx());
-        self.receive_file(shown, next);
+        receive_file(self, shown, next);
         if std::mem::take(&mut shown.messages.files_changed) {
             self.take_in_files(shown);
         }

@@ -78,7 +78,11 @@ impl App {
         panel.frame(frame).show(ui, |ui| {
             let height = ui.available_height().max(0.0);
             // The list gets the height that the other parts left free in the last frame, and stays in view.
-            let events = (height - self.panel.other_parts).clamp(EVENTS.min(0.5 * height), 0.6 * height);
+            let events = match sheet {
+                // A low panel scrolls as a whole.
+                Some(_) => 0.0,
+                None => (height - self.panel.other_parts).clamp(EVENTS.min(0.5 * height), 0.6 * height),
+            };
             let area = ScrollArea::vertical().max_height(height - events);
             area.auto_shrink(false).show(ui, |ui| {
                 // The scroll bar needs space beside the figures.
@@ -97,7 +101,13 @@ impl App {
                     self.show_floor_parts(ui);
                 }
                 self.panel.other_parts = ui.cursor().top() - top;
+                if sheet.is_some() {
+                    events::events_part(ui, &theme, &self.shown.messages, &mut self.panel.search, EVENTS);
+                }
             });
+            if sheet.is_some() {
+                return;
+            }
             let left = ui.available_height();
             ui.set_width(ui.available_width() - 8.0);
             events::events_part(ui, &theme, &self.shown.messages, &mut self.panel.search, left);

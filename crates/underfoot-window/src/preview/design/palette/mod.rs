@@ -134,6 +134,7 @@ impl ThingList {
     fn search(&mut self, ui: &mut Ui, is_led: bool) -> Response {
         let width = ui.available_width() - 12.0;
         let field = TextEdit::singleline(&mut self.words).hint_text("Search").desired_width(width);
+        let field = field.align(egui::Align2::LEFT_CENTER);
         let field = ui.add(field);
         field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Search things"));
         if is_led {

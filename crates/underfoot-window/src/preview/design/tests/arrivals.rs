@@ -1,6 +1,7 @@
 //! Files that come into the window as texts, as a browser gives them: broken ones change nothing.
 
 use super::*;
+use crate::preview::design::arrivals::{take_layout, take_parts};
 
 const KIND: &str = r#"Kind(name: "huge", from: "button", feel: (press: "thud"))"#;
 const EFFECT: &str =
@@ -17,9 +18,8 @@ fn kept(folder: &TempDir, name: &str) -> Option<String> {
 #[test]
 fn a_broken_kind_or_effect_that_comes_alone_is_told_with_its_place_and_not_kept() {
     let (desk, folder) = (Desk::map(), tempfile::tempdir().unwrap());
-    let take = |name: &str, text: &str| {
-        desk.designer().take_parts(vec![(at(&folder, name), text.to_owned())])
-    };
+    let take =
+        |name: &str, text: &str| take_parts(desk.designer(), vec![(at(&folder, name), text.to_owned())]);
     // The bracket of the second line has no end.
     let broken = take("widgets/huge.ron", "Kind(name: \"huge\",\n    from: \"button\", look: (");
     assert_eq!((broken.kept, broken.refused.len()), (0, 1));
@@ -30,7 +30,7 @@ fn a_broken_kind_or_effect_that_comes_alone_is_told_with_its_place_and_not_kept(
     assert!(alone.kept == 0 && alone.refused[0].contains("thud"), "{alone:?}");
     let both = [("widgets/huge.ron", KIND), ("effects/thud.ron", EFFECT)];
     let both = both.map(|(name, text)| (at(&folder, name), text.to_owned()));
-    let taken = desk.designer().take_parts(both.to_vec());
+    let taken = take_parts(desk.designer(), both.to_vec());
     assert_eq!((taken.kept, taken.refused.len()), (2, 0), "{taken:?}");
     // The last good text of a file outlasts broken ones of the same name.
     for (name, good) in [("widgets/huge.ron", KIND), ("effects/thud.ron", EFFECT)] {
@@ -49,7 +49,7 @@ fn of_a_folder_the_readable_kinds_are_kept_and_each_broken_one_is_told() {
         let text = format!("Kind(name: \"{name}\", from: \"button\"{}", if number < 2 { ")" } else { "" });
         (at(&folder, &format!("widgets/{name}.ron")), text)
     };
-    let taken = desk.designer().take_parts(names.iter().enumerate().map(part).collect());
+    let taken = take_parts(desk.designer(), names.iter().enumerate().map(part).collect());
     assert_eq!((taken.kept, taken.refused.len()), (2, 3), "{taken:?}");
     for (name, told) in names[2..].iter().zip(&taken.refused) {
         assert!(told.contains(&format!("{name}.ron:1:")), "{told}");
@@ -62,10 +62,10 @@ fn a_broken_layout_leaves_the_open_one_and_the_file_before() {
     let (mut desk, folder) = (Desk::map(), tempfile::tempdir().unwrap());
     let path = at(&folder, "mine.ron");
     let text = builtin_layout("map").unwrap().replace("\"Home\"", "\"Start\"");
-    assert!(desk.designer_mut().take_layout(&path, &text));
+    assert!(take_layout(desk.designer_mut(), &path, &text));
     assert!(desk.text().contains("\"Start\""));
     let half = &text[..text.len() / 2];
-    assert!(!desk.designer_mut().take_layout(&path, half));
+    assert!(!take_layout(desk.designer_mut(), &path, half));
     desk.window.run_steps(2);
     assert!(desk.says("mine.ron:"), "the place of the problem");
     assert_eq!((kept(&folder, "mine.ron"), desk.text()), (Some(text.clone()), text));
