@@ -45,10 +45,17 @@ class Hand {
   }
 
   async tap(widget, role) {
-    await this.touch("touchStart", [await this.middleOf(widget, role)]);
+    await this.tapAt(await this.middleOf(widget, role));
+  }
+
+  async tapAt(point) {
+    await this.touch("touchStart", [point]);
     await this.edition.wait(120);
+    const { frame } = await this.edition.report();
     await this.touch("touchEnd", []);
     await this.edition.wait(500);
+    // Some frames later, the window shows what follows; on a busy machine that takes a while.
+    for (let turn = 0; turn < 100 && (await this.edition.report()).frame < frame + 5; turn += 1) await this.edition.wait(50);
   }
 
   async isShown(name, role) {
@@ -131,10 +138,7 @@ async function design(hand, name) {
   const before = (await edition.report()).widgets.filter((widget) => widget.name.startsWith("On the floor: ")).length;
   const [x0, y0, x1, y1] = hand.seen(await edition.widget("Drawing board"));
   // Between the controls of the map, beside its middle.
-  await hand.touch("touchStart", [{ x: x0 + 0.5 * (x1 - x0), y: y0 + 0.5 * (y1 - y0), id: 1 }]);
-  await edition.wait(120);
-  await hand.touch("touchEnd", []);
-  await edition.wait(600);
+  await hand.tapAt({ x: x0 + 0.5 * (x1 - x0), y: y0 + 0.5 * (y1 - y0), id: 1 });
   await edition.picture(`${name}-8-put`);
   const after = (await edition.report()).widgets.filter((widget) => widget.name.startsWith("On the floor: ")).length;
   await hand.tap("Panel");
