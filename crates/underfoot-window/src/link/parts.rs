@@ -90,19 +90,22 @@ impl ReadableParts {
         loop {
             self.kinds = below.clone();
             let Err(problems) = self.kinds.add_all(&files) else { break };
+            let old_of = |(file, text): &(&str, &str)| {
+                stored.get(*file).map(String::as_str).filter(|old| old != text && new.contains_key(*file))
+            };
+            let is_bad = |file: &str| problems_of(&problems, file).errors() > 0;
+            // The last good state stays; others may be made of it.
+            let goes_back = files.iter().any(|one| is_bad(one.0) && old_of(one).is_some());
             let before = files.len();
             let mut back = Vec::new();
-            files.retain(|(file, text)| {
-                let own = problems_of(&problems, file);
-                let is_good = own.errors() == 0;
-                if !is_good {
-                    self.refuse(KINDS, file, own);
-                    // The last good state stays.
-                    back.extend(
-                        stored.get(*file).map(|old| (*file, old.as_str())).filter(|(_, old)| old != text),
-                    );
+            files.retain(|one| {
+                let old = old_of(one);
+                let stays = !is_bad(one.0) || (goes_back && old.is_none());
+                if !stays {
+                    self.refuse(KINDS, one.0, problems_of(&problems, one.0));
+                    back.extend(old.map(|old| (one.0, old)));
                 }
-                is_good
+                stays
             });
             // Errors are always of one of the files; otherwise none of them can be used.
             if files.len() == before {

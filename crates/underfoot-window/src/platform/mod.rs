@@ -57,7 +57,7 @@ pub use desktop::files::{texts_beside, usual_state};
 /// A file that has come into a `FileInbox`.
 #[cfg(feature = "window")]
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(not(target_arch = "wasm32"), allow(dead_code, reason = "a desktop has the files already"))]
+#[allow(dead_code, reason = "a desktop has the files already, and a browser has their texts alone")]
 pub(crate) enum Arrival {
     /// A layout to open, which has its file.
     Layout(PathBuf),

@@ -6,7 +6,7 @@ use super::help::help_menu;
 use super::pills::{link_state, mutes};
 use crate::preview::app::App;
 use crate::preview::closing::file_name;
-use crate::preview::handheld::TARGET;
+use crate::preview::handheld::{TARGET, with_word};
 use crate::preview::style::panel_frame;
 use underfoot::wire::LinkState;
 use underfoot_scene::scene::Theme;
@@ -59,7 +59,7 @@ fn title(app: &mut App, ui: &mut Ui, theme: &Theme, width: f32) {
                 ui.add_space(GAP);
                 file_name(ui, theme, designer);
             }
-            None => app.top_bar.title(ui, theme, &app.shown.layout().title, width),
+            None => with_word(ui, |ui| app.top_bar.title(ui, theme, &app.shown.layout().title, width)),
         }
     });
 }
