@@ -146,12 +146,13 @@ function isAnswered(index, entries) {
 
 const nextFrame = () => new Promise((take) => requestAnimationFrame(take));
 
-/// Waits until `check` holds and the window has drawn some frames since `frame`; returns whether it did within `soon` ms.
+/// Waits until `check` holds in a later frame of the window than `frame`; returns whether it did within `soon` ms. A window
+/// without news draws no further ones.
 async function comesWithin(soon, frame, check) {
   const begun = performance.now();
   while (performance.now() - begun < soon) {
     await nextFrame();
-    if (report().frame > frame + 2 && check()) return true;
+    if (report().frame > frame && check()) return true;
   }
   return false;
 }

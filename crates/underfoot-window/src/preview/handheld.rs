@@ -9,7 +9,7 @@ use crate::platform;
 pub(super) const TARGET: f32 = 44.0;
 
 /// Room around the icon of a button for fingers, whose width is then that of a target, in points.
-const ICON_PADDING: egui::Vec2 = vec2(15.1, 4.0);
+const ICON_PADDING: egui::Vec2 = vec2(15.4, 4.0);
 
 /// Room beside the word of a button for fingers, in points.
 const WORD_PADDING: f32 = 11.5;
@@ -115,6 +115,8 @@ pub(super) fn fit_targets(ctx: &Context, for_fingers: bool) {
         let spacing = &mut style.spacing;
         spacing.interact_size.y = if for_fingers { TARGET } else { usual.interact_size.y };
         spacing.button_padding = if for_fingers { ICON_PADDING } else { super::style::BUTTON_PADDING };
+        // A hint fits the narrowest phone.
+        spacing.tooltip_width = if for_fingers { 280.0 } else { usual.tooltip_width };
         spacing.icon_width = if for_fingers { 22.0 } else { usual.icon_width };
         spacing.icon_width_inner = if for_fingers { 13.0 } else { usual.icon_width_inner };
     });
