@@ -8,11 +8,11 @@ use crate::platform;
 /// Side of a target for a finger, in points: a finger tip covers some 9 mm, and 44 points of a phone are 7 to 9 mm.
 pub(super) const TARGET: f32 = 44.0;
 
-/// Room around the icon of a button for fingers, whose width is then that of a target, in points.
-const ICON_PADDING: egui::Vec2 = vec2(15.4, 4.0);
+/// Room around the icon of a button for fingers, which makes it about as wide as high, in points.
+const ICON_PADDING: egui::Vec2 = vec2(15.0, 4.0);
 
 /// Room beside the word of a button for fingers, in points.
-const WORD_PADDING: f32 = 11.5;
+const WORD_PADDING: f32 = 11.0;
 
 /// Width below which a window counts as one in a hand, in points: phones that are held upright have 320 to 480.
 const NARROW: f32 = 600.0;

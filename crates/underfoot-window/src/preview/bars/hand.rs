@@ -12,7 +12,7 @@ use underfoot::wire::LinkState;
 use underfoot_scene::scene::Theme;
 
 /// Gap between two buttons, in points.
-const GAP: f32 = 3.0;
+const GAP: f32 = 2.0;
 
 /// Least and greatest width of the title, in points.
 const TITLE: (f32, f32) = (64.0, 280.0);
