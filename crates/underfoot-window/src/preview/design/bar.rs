@@ -24,6 +24,9 @@ use underfoot_scene::scene::Theme;
 /// Width of the field for a path in a window in a hand, in points.
 const PATH: f32 = 130.0;
 
+/// Width of the button Arrange for fingers, in points, rounded up.
+const ARRANGE: f32 = 90.0;
+
 /// The action of a menu entry.
 type Action = fn(&mut EditedLayout);
 
@@ -147,6 +150,10 @@ impl Designer {
         let (mut wanted, mut does) = (None, None);
         let is_group = matches!(items[..], [item] if item.is_group);
         let count = areas.len();
+        // This part of the line is not wrapped by itself.
+        if is_for_fingers(ui) && ui.available_size_before_wrap().x < ARRANGE {
+            ui.end_row();
+        }
         ui.add_enabled_ui(count > 0, |ui| {
             ui.menu_button("Arrange", |ui| {
                 menu_content(ui, |ui| {
