@@ -195,7 +195,7 @@ impl Designer {
                             }
                         }
                     });
-                })
+                });
             });
         });
         if let Some(does) = does {

@@ -40,6 +40,7 @@ use edited::{EditMessage, EditedLayout};
 
 use crate::edit::{Document, LayoutFile};
 use crate::platform::FileInbox;
+use crate::preview::handheld::PanelSheet;
 use crate::preview::share::LayoutToShare;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
@@ -114,6 +115,8 @@ struct Panes {
     is_led: bool,
     /// Whether the window shows one panel at a time, at the right.
     is_narrow: bool,
+    /// The place of the open panel in a window in a hand.
+    sheet: Option<PanelSheet>,
     /// Whether the list of things is open, in a window in a hand.
     shows_things: bool,
 }

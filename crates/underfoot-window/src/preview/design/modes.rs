@@ -139,10 +139,11 @@ impl Designer {
         // This frame shows the edits so far: records may have changed places.
         self.edited.refresh();
         self.panes.is_narrow = !stage.is_wide();
+        self.panes.sheet = stage.sheet();
         let [things, fields, text] = self.panes_on_display(stage);
         if things {
             let canvas = &mut self.canvas;
-            self.things.panel(ui, theme, palette, &mut self.edited, canvas, &mut self.panes, stage);
+            self.things.panel(ui, theme, palette, &mut self.edited, canvas, &mut self.panes);
         }
         if fields {
             self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes, stage);

@@ -17,7 +17,6 @@ use super::list::list;
 use super::list_keys::go_on;
 use super::{Pane, Panes};
 use crate::preview::handheld::{TARGET, is_for_fingers, panel_at};
-use crate::preview::stage::StageOfWindow;
 use crate::preview::style::{panel_frame, quiet, replace_by_typing, section, write_within};
 use in_hand::PutOrder;
 use thing::PaletteSection;
@@ -74,10 +73,9 @@ impl ThingList {
         edited: &mut EditedLayout,
         canvas: &mut Canvas,
         panes: &mut Panes,
-        stage: &StageOfWindow,
     ) {
         let frame = panel_frame(theme, Margin { left: 12, right: 4, top: 0, bottom: 6 });
-        let panel = panel_at(stage.sheet(), || {
+        let panel = panel_at(panes.sheet, || {
             // In a narrow window all panels have one place.
             let panel = if panes.is_narrow { Panel::right("palette") } else { Panel::left("palette") };
             panel.resizable(true).default_size(204.0).size_range(150.0..=300.0)
