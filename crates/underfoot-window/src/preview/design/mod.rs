@@ -117,6 +117,8 @@ struct Panes {
     is_narrow: bool,
     /// The place of the open panel in a window in a hand.
     sheet: Option<PanelSheet>,
+    /// Whether a thing is in hand whose place is on the floor: the list folds, once the finger that took the thing is up.
+    puts_down: bool,
     /// Whether the list of things is open, in a window in a hand.
     shows_things: bool,
 }

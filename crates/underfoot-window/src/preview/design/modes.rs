@@ -140,6 +140,8 @@ impl Designer {
         self.edited.refresh();
         self.panes.is_narrow = !stage.is_wide();
         self.panes.sheet = stage.sheet();
+        let is_down = ui.input(|i| i.pointer.any_down() || i.pointer.any_released());
+        self.panes.puts_down = self.canvas.placing.is_some() && !is_down;
         let [things, fields, text] = self.panes_on_display(stage);
         if things {
             let canvas = &mut self.canvas;
@@ -180,9 +182,7 @@ impl Designer {
             return [true, stage.has_side || pane == Some(Pane::Fields), text];
         }
         if stage.sheet().is_some() {
-            // A thing in hand goes onto the floor.
-            let puts_down = self.canvas.placing.is_some();
-            let [things, fields] = [self.panes.shows_things && !puts_down, stage.has_side];
+            let [things, fields] = [self.panes.shows_things && !self.panes.puts_down, stage.has_side];
             return [things, fields && !things, text && !fields && !things];
         }
         let is_selected = !self.edited.selected.is_empty();
