@@ -6,23 +6,17 @@
 // FOLDER is target/web, which `./dev web` makes; UNDERFOOT is the program, with the web edition or without.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { once } from "node:events";
-import http from "node:http";
 import { resolve } from "node:path";
-import { answerFrom, visitor } from "./edition/page.mjs";
+import { answerFrom, atEnd, script, serve, stop, visitor } from "./edition/page.mjs";
 import { freeAddress, until } from "./harness.mjs";
 
 const [chromium, folder, underfoot] = process.argv.slice(2);
 const [web, boards] = [await freeAddress(), await freeAddress()];
 const home = `http://${web}/`;
-const { browser, end } = await visitor(chromium);
-let floor;
-let status = 1;
-try {
+await script(async (results) => {
+  const { browser } = await visitor(chromium);
   // A visit of the static page, which the browser keeps.
-  const server = http.createServer(answerFrom(folder));
-  server.listen(Number(web.split(":")[1]), "127.0.0.1");
-  await once(server, "listening");
+  const server = await serve(folder, answerFrom(folder), Number(web.split(":")[1]));
   const page = await browser.newPage();
   await page.goto(home);
   await page.waitForFunction(() => document.getElementById("cover").hidden && navigator.serviceWorker.controller);
@@ -30,12 +24,13 @@ try {
     localStorage.setItem("underfoot:kept.ron", "a draft");
     return caches.open("another program's").then((cache) => cache.put("/x", new Response("y")));
   });
-  await new Promise((done) => { server.closeAllConnections(); server.close(done); });
+  await stop(server);
   await page.goto("about:blank");
 
   // The floor at the same address.
   const options = ["run", "map", "--listen", boards, "--web", web, "--no-osc", "--sound", "off"];
-  floor = spawn(resolve(underfoot), options, { stdio: "ignore" });
+  const floor = spawn(resolve(underfoot), options, { stdio: "ignore" });
+  atEnd(() => floor.kill("SIGKILL"));
   await until("the floor", () => fetch(`${home}health`).then(() => true, () => false));
   const begun = performance.now();
   await page.goto(home);
@@ -53,10 +48,5 @@ try {
   // From now on at once.
   await page.goto(home);
   assert.ok(await isOfFloor(), "the next visit shows the floor's page");
-  console.log(JSON.stringify({ passed_s }));
-  status = 0;
-} finally {
-  await end();
-  floor?.kill("SIGKILL");
-}
-process.exit(status);
+  results.passed_s = passed_s;
+});

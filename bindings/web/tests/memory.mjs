@@ -6,7 +6,7 @@
 // FOLDER is target/web, which `./dev web` makes.
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import { Edition, linkTo, serve, visitor } from "./edition/page.mjs";
+import { Edition, linkTo, script, serve, visitor } from "./edition/page.mjs";
 
 const [chromium, folder, asked] = process.argv.slice(2);
 const MINUTES = Number(asked ?? 10);
@@ -33,10 +33,9 @@ function privateBytes(process) {
   return of("Private_Clean") + of("Private_Dirty");
 }
 
-const server = await serve(folder);
-const { browser, end } = await visitor(chromium);
-let status = 1;
-try {
+await script(async (results) => {
+  const server = await serve(folder);
+  const { browser } = await visitor(chromium);
   // A layout with a slider under all of the floor: the foot changes a value all the time, and rubs.
   const link = linkTo("wide.ron", `Layout(version: 1, title: "wide", regions: [(id: "all", at: (0, 0), size: (6, 6))],
     widgets: [(id: "wide", kind: "slider", label: "Wide", at: (0.5, 2), size: (5, 2))])`);
@@ -84,14 +83,9 @@ try {
   const frames_per_s = Number((((await frames()) - before) / (minutes() * 60)).toFixed(1));
   await edition.page.mouse.up();
   assert.deepEqual(edition.errors, []);
-  console.log(JSON.stringify({ frames_per_s, rows }));
+  Object.assign(results, { frames_per_s, rows });
   const [settled, last] = [rows[Math.min(2, rows.length - 1)], rows.at(-1)];
   for (const part of ["program_mb", "scripts_mb", "process_mb"]) {
     assert.ok(last[part] - settled[part] <= MOST_GROWTH_MB, `${part} grows from ${settled[part]} to ${last[part]}`);
   }
-  status = 0;
-} finally {
-  await end();
-  server.close();
-}
-process.exit(status);
+});

@@ -10,7 +10,7 @@ import { once } from "node:events";
 import { resolve } from "node:path";
 import { WebSocket } from "ws";
 import { Boards, nowMs } from "./edition/boards.mjs";
-import { Edition, visitor } from "./edition/page.mjs";
+import { Edition, atEnd, script, visitor } from "./edition/page.mjs";
 import { freeAddress, until } from "./harness.mjs";
 
 const [chromium, underfoot] = process.argv.slice(2);
@@ -91,12 +91,12 @@ function spread(delays) {
   return { median_ms: at(0.5), of_95_percent_ms: at(0.95), steps: sorted.length };
 }
 
-const results = {};
-let floor = await serve();
-const boards = await Boards.start(boardsAt);
-const { browser, end } = await visitor(chromium, `--host-resolver-rules=MAP ${NAME} 127.0.0.1`);
-let status = 1;
-try {
+await script(async (results) => {
+  let floor = await serve();
+  atEnd(() => { if (floor.exitCode === null && floor.signalCode === null) return kill(floor); });
+  const boards = await Boards.start(boardsAt);
+  atEnd(() => boards.end());
+  const { browser } = await visitor(chromium, `--host-resolver-rules=MAP ${NAME} 127.0.0.1`);
   const edition = await Edition.open(browser, `http://${web}/?screen_report`);
   results.first_frame_s = Number(edition.first_s.toFixed(2));
   // The tare of an empty floor.
@@ -200,12 +200,4 @@ try {
   // While the server was killed, the browser names each failed connection.
   const errors = edition.errors.filter((text) => !text.includes("WebSocket connection"));
   assert.deepEqual(errors, []);
-  console.log(JSON.stringify(results));
-  status = 0;
-} finally {
-  if (status) console.error(JSON.stringify(results));
-  await end();
-  await boards.end();
-  if (floor.exitCode === null && floor.signalCode === null) await kill(floor);
-}
-process.exit(status);
+});

@@ -7,12 +7,10 @@
 // this script mixes them to two as docs/actuators-and-sound.md says: by columns, at constant power.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { once } from "node:events";
 import fs from "node:fs";
-import http from "node:http";
 import os from "node:os";
 import path from "node:path";
-import { Edition, answerFrom, visitor } from "./edition/page.mjs";
+import { Edition, answerFrom, script, serve, visitor } from "./edition/page.mjs";
 import { root, until } from "./harness.mjs";
 
 const [chromium, folder, underfoot] = process.argv.slice(2);
@@ -178,15 +176,12 @@ const click = soundAfter(wanted, at_s("pressed", "home") - 0.002);
 const friction = soundAfter(wanted, at_s("changed", "zoom") - 0.002);
 
 const files = answerFrom(folder);
-const server = http.createServer((request, response) => {
-  if (request.url !== "/tape.js") return files(request, response);
-  response.writeHead(200, { "content-type": "text/javascript" }).end(TAPE);
-});
-server.listen(0, "127.0.0.1");
-await once(server, "listening");
-const { browser, end } = await visitor(chromium);
-let status = 1;
-try {
+await script(async (results) => {
+  const server = await serve(folder, (request, response) => {
+    if (request.url !== "/tape.js") return files(request, response);
+    response.writeHead(200, { "content-type": "text/javascript" }).end(TAPE);
+  });
+  const { browser } = await visitor(chromium);
   const address = `http://127.0.0.1:${server.address().port}/?screen_report${link}`;
   // A small window is drawn faster than the time passes, on a computer without a graphics card too.
   const edition = await Edition.open(browser, address, tapeSound, { width: 640, height: 480 });
@@ -199,14 +194,8 @@ try {
   await edition.wait(500);
   const heard = await taped(edition);
   assert.deepEqual(edition.errors, []);
-  const results = { click: compared(wanted, heard, click), friction: compared(wanted, heard, friction) };
-  console.log(JSON.stringify(results));
+  Object.assign(results, { click: compared(wanted, heard, click), friction: compared(wanted, heard, friction) });
   for (const [name, { error_db }] of Object.entries(results)) {
     assert.ok(error_db < LOUDEST_ERROR_DB, `${name}: ${error_db} dB`);
   }
-  status = 0;
-} finally {
-  await end();
-  server.close();
-}
-process.exit(status);
+});

@@ -94,8 +94,7 @@ impl PageDesk {
     fn open(&mut self, choice: usize) {
         let name = self.choices.get(choice).map_or(FIRST, String::as_str).to_owned();
         let text = schema::builtin_layout(&name).unwrap_or_default();
-        let read = self.own.read(None).and_then(|kinds| Document::read(&name, text, &kinds, &self.floor));
-        match read {
+        match Document::read(&name, text, &self.own.read(None), &self.floor) {
             Ok(document) => {
                 let warnings = Warnings::from(&document.review());
                 self.put(document.layout(), name, warnings, LayoutCause::Opened);

@@ -145,7 +145,7 @@ impl PageFloor {
             name: plan.name.clone(),
             text: plan.text.clone(),
             path: None,
-            kinds_of: Box::new(move |path| kinds_of.read(path)),
+            kinds_of: Box::new(move |path| Ok(kinds_of.read(path))),
             state: usual_state(),
         };
         let input = PreviewInput {

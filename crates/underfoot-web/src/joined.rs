@@ -108,11 +108,13 @@ impl JoinedFloor {
             name: "the server’s layout".into(),
             text: greeting.layout_text.clone(),
             path: None,
-            kinds_of: Box::new(move |path| kinds_of.read(path)),
+            kinds_of: Box::new(move |path| Ok(kinds_of.read(path))),
             state: usual_state(),
         };
-        if let Some(SharedLayout { name, text, .. }) = shared {
-            let read = own.read(None).and_then(|kinds| Document::read(name, text, &kinds, &floor));
+        if let Some(shared) = shared {
+            let SharedLayout { name, text, .. } = shared;
+            let read =
+                shared.all_kinds().and_then(|kinds| Document::read(name, text, &Arc::new(kinds), &floor));
             match read {
                 Ok(_) => (design.name, design.text) = (name.clone(), text.clone()),
                 Err(problems) => {

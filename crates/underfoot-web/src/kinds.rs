@@ -5,8 +5,8 @@ use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use underfoot::schema::{Diagnostics, Kinds};
-use underfoot_window::link::SharedLayout;
+use underfoot::schema::{Effects, Kinds};
+use underfoot_window::link::{EFFECTS, KINDS, ReadableParts, SharedLayout};
 use underfoot_window::preview::texts_beside;
 
 /// The texts of the user's kinds and effects. Clones share them.
@@ -33,24 +33,26 @@ impl OwnTexts {
     }
 
     /// The kinds and effects for the layout at `path`, as a layout without a text: those in the folders `widgets` and
-    /// `effects` beside it, or the kinds of the link, and the effects of the link and those kept here.
+    /// `effects` beside it, or the kinds of the link, and the effects of the link and those kept here. Those that cannot
+    /// be read are left out: the window has shown their problems when they came.
     #[must_use]
     pub fn of_layout(&self, path: Option<&Path>) -> SharedLayout {
-        let mut texts = self.0.borrow().clone();
-        let beside = |name| path.map(|path| texts_beside(path, name)).unwrap_or_default();
-        texts.effects.extend(beside("effects"));
-        let kinds = beside("widgets");
-        if !kinds.is_empty() {
-            texts.kinds = kinds;
-        }
-        texts
+        self.readable(path).texts
     }
 
-    /// All kinds and effects for the layout at `path`, with those that come with underfoot.
-    ///
-    /// # Errors
-    /// The problems of the first text that cannot be read.
-    pub fn read(&self, path: Option<&Path>) -> Result<Arc<Kinds>, Diagnostics> {
-        self.of_layout(path).all_kinds().map(Arc::new)
+    /// All kinds and effects for the layout at `path` that can be read, with those that come with underfoot.
+    #[must_use]
+    pub fn read(&self, path: Option<&Path>) -> Arc<Kinds> {
+        Arc::new(self.readable(path).kinds)
+    }
+
+    fn readable(&self, path: Option<&Path>) -> ReadableParts {
+        let mut own = self.0.borrow().clone();
+        let beside = |name| path.map(|path| texts_beside(path, name)).unwrap_or_default();
+        let new = SharedLayout { kinds: beside(KINDS), effects: beside(EFFECTS), ..SharedLayout::default() };
+        if !new.kinds.is_empty() {
+            own.kinds.clear();
+        }
+        ReadableParts::of(&Effects::builtin(), &own, &new)
     }
 }

@@ -89,7 +89,7 @@ impl FloorPlan {
     pub(crate) fn of(shared: &SharedLayout) -> Result<Self, NoFloor> {
         let nominal = Floor::of(geometry_of(shared.grid)?);
         let own = OwnTexts::of(shared);
-        let kinds = own.read(None)?;
+        let kinds = Arc::new(shared.all_kinds()?);
         let document = Document::read(&shared.name, &shared.text, &kinds, &Arc::new(nominal.clone()))?;
         let build = match &shared.visit {
             Some(visit) => visit.build()?,

@@ -22,10 +22,35 @@ export function answerFrom(folder) {
   };
 }
 
-/// Static files, as any host serves them.
-export function serve(folder) {
-  const server = http.createServer(answerFrom(folder));
-  return new Promise((resolve) => server.listen(0, "127.0.0.1", () => resolve(server)));
+/// Static files, as any host serves them, until the script ends; at any free port unless one is given.
+export function serve(folder, answer = answerFrom(folder), port = 0) {
+  const server = http.createServer(answer);
+  atEnd(() => stop(server));
+  return new Promise((resolve) => server.listen(port, "127.0.0.1", () => resolve(server)));
+}
+
+/// Ends a server and its connections; one that has ended stays so.
+export function stop(server) {
+  server.closeAllConnections();
+  return new Promise((resolve) => server.close(resolve));
+}
+
+/// What ends all that the script has opened, the last first.
+const ends = [];
+
+/// Calls `end` when the script ends, if its tests fail, too.
+export function atEnd(end) {
+  ends.push(end);
+}
+
+/// Runs the tests of a script, which note their results in the object that they get; prints those, and ends the script.
+export async function script(tests) {
+  const results = {};
+  const failure = await tests(results).then(() => null, (error) => ({ error }));
+  for (const end of ends.reverse()) await end();
+  if (failure) console.error(JSON.stringify(results), failure.error);
+  else console.log(JSON.stringify(results));
+  process.exit(failure ? 1 : 0);
 }
 
 const ARGS = [
@@ -38,11 +63,13 @@ export function linkTo(name, text) {
   return `#1.${zlib.deflateSync(JSON.stringify({ name, text })).toString("base64url")}`;
 }
 
-/// A browser of a visitor's own, with nothing stored, and with further flags.
+/// A browser of a visitor's own, with nothing stored, and with further flags. It ends with the script, or before by `end`.
 export async function visitor(executablePath, ...flags) {
   const userDataDir = fs.mkdtempSync(path.join(os.tmpdir(), "underfoot-visitor-"));
   const browser = await puppeteer.launch({ executablePath, args: [...ARGS, ...flags], headless: true, userDataDir });
-  return { browser, end: async () => { await browser.close(); fs.rmSync(userDataDir, { recursive: true, force: true }); } };
+  const end = async () => { await browser.close(); fs.rmSync(userDataDir, { recursive: true, force: true }); };
+  atEnd(end);
+  return { browser, end };
 }
 
 /// In the page: notes what the loudspeakers get, how often the phone buzzes, and the frames that are drawn.

@@ -7,6 +7,7 @@
 //!
 //! The part behind `#` stays in the browser: no server gets it. The number in front is the version of this form.
 
+mod parts;
 mod tape;
 #[cfg(test)]
 mod tests;
@@ -27,6 +28,7 @@ use underfoot::layout::Layout;
 use underfoot::schema::{Diagnostics, Effects, Kinds, parse_layout};
 use underfoot_sim::BadFeet;
 
+pub use parts::{EFFECTS, KINDS, ReadableParts, UnreadablePart};
 pub use tape::{KeptVisit, VisitTape};
 pub use visit::{MAX_VISIT, SharedVisit};
 

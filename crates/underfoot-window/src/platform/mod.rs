@@ -12,6 +12,7 @@
 //! | `texts_beside` | the texts in a folder | entries of the storage |
 //! | `repeat` | a thread | the frames of the page |
 //! | `put_report` | a file | a name in the page |
+//! | `has_coarse_pointer` | false | as the browser says |
 
 #[cfg(target_arch = "wasm32")]
 mod browser;
@@ -37,7 +38,7 @@ pub(crate) use browser::{
     inbox::{FileInbox, GIVES, give, note_saved},
     lock::FolderLock,
     repeat::repeat,
-    screen::{put_report, report_place},
+    screen::{has_coarse_pointer, put_report, report_place},
 };
 #[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 pub(crate) use desktop::{
@@ -45,7 +46,7 @@ pub(crate) use desktop::{
     inbox::{FileInbox, GIVES, give, note_saved},
     lock::FolderLock,
     repeat::repeat,
-    screen::{put_report, report_place},
+    screen::{has_coarse_pointer, put_report, report_place},
 };
 
 #[cfg(all(feature = "window", target_arch = "wasm32"))]
@@ -56,12 +57,14 @@ pub use desktop::files::{texts_beside, usual_state};
 /// A file that has come into a `FileInbox`.
 #[cfg(feature = "window")]
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(not(target_arch = "wasm32"), allow(dead_code, reason = "a desktop has the files already"))]
+#[allow(dead_code, reason = "a desktop has the files already, and a browser has their texts alone")]
 pub(crate) enum Arrival {
-    /// A layout to open.
+    /// A layout to open, which has its file.
     Layout(PathBuf),
-    /// So many kinds of controls and effects, which now lie beside the layouts.
-    Parts(usize),
+    /// The text of a layout to keep at this path and open, if it can be read.
+    LayoutText(PathBuf, String),
+    /// The texts of kinds of controls and of effects to keep at these paths, beside the layouts, if they can be read.
+    Parts(Vec<(PathBuf, String)>),
     /// The reason why a file did not come.
     Refused(String),
     /// A message of the page about a file.

@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use super::PreviewOptions;
 use super::appearance::Appearance;
-use super::bars::{HelpTopic, MessageStack, TELL_S, TopBar, handle_mute_key, help_bar};
+use super::bars::{HelpTopic, MessageStack, TELL_S, TopBar, handle_mute_key};
 use super::channels::NextFloor;
 use super::closing::{Closing, Title, handle_quit_key};
 use super::design::Designer;
@@ -12,6 +12,8 @@ use super::feed::PreviewInput;
 use super::floor_check::FloorCheck;
 use super::floor_view::{FloorFeet, FloorPane, OnFloor};
 use super::focus::FocusRing;
+use super::fold::{UnfoldedPanels, fit_hand, show_lower_bars};
+use super::handheld::{HoldWatch, WindowHold};
 use super::lookout;
 use super::messages::{Happened, WindowMessages};
 use super::mode::WindowMode;
@@ -44,7 +46,7 @@ pub(super) struct App {
     pub(super) plots: Plots,
     pub(super) panel: SidePanel,
     pub(super) top_bar: TopBar,
-    status: StatusBar,
+    pub(super) status: StatusBar,
     /// `None` unless a recording is on display.
     pub(super) time_line: Option<TimeLine>,
     /// `None` where nothing can be recorded or exported.
@@ -76,6 +78,11 @@ pub(super) struct WindowState {
     widths: PanelWidths,
     /// Whether the last frame showed Design mode.
     was_designing: bool,
+    pub(super) hold_watch: HoldWatch,
+    /// How the window is held in this frame.
+    pub(super) hold: WindowHold,
+    /// The mode and the open panels of the last frame, in a window in a hand.
+    pub(super) unfolded: UnfoldedPanels,
     /// The options with which the window began.
     pub(super) options: PreviewOptions,
     next_floor: Option<NextFloor>,
@@ -118,6 +125,9 @@ impl App {
                 focus: FocusRing::default(),
                 widths: PanelWidths::default(),
                 was_designing: false,
+                hold_watch: HoldWatch::default(),
+                hold: WindowHold::Desk,
+                unfolded: UnfoldedPanels::default(),
                 options: options.clone(),
                 next_floor: channels.next_floor,
             },
@@ -178,6 +188,7 @@ impl App {
         // The window looks as it did.
         std::mem::swap(&mut next.appearance, &mut self.appearance);
         next.view.zoom = self.view.zoom;
+        next.window.hold_watch = self.window.hold_watch;
         *self = next;
         ctx.request_repaint();
     }
@@ -185,6 +196,7 @@ impl App {
     /// Draws one frame.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.go_on(ui.ctx());
+        fit_hand(self, ui.ctx());
         self.receive(ui);
         self.handle_keys(ui);
         self.follow_steps(ui);
@@ -195,14 +207,14 @@ impl App {
         self.show_top_bar(ui);
         self.show_gallery(ui);
         let theme = self.appearance.theme();
-        self.status.show(ui, &theme, &self.shown);
-        help_bar(ui, &theme, self.activity());
+        show_lower_bars(self, ui, &theme);
         if let Some(line) = &mut self.time_line {
             line.show(ui, &theme);
         }
         let (room, widths) = (ui.available_rect_before_wrap(), self.window.widths);
         let has_side = self.panel.is_shown(room.width(), self.is_designing());
-        let mut stage = StageOfWindow::new(room, widths, self.designer.is_some(), has_side);
+        let stage = StageOfWindow::new(room, widths, self.designer.is_some(), has_side);
+        let mut stage = stage.held(self.window.hold);
         match (&mut self.designer, begun) {
             (Some(designer), Some(before)) => {
                 // A click on the switch of the modes leaves Design mode some frames later.
@@ -256,11 +268,11 @@ impl App {
         let theme = self.appearance.theme();
         let tunes = self.tuner.as_ref().is_some_and(|tuner| tuner.is_open);
         match self.floor_check.as_mut().filter(|check| check.is_running()) {
-            Some(check) => check.panel(ui, &theme, &self.shown, self.feet.are_led()),
+            Some(check) => check.panel(ui, &theme, &self.shown, self.feet.are_led(), stage.sheet()),
             // A narrow window has room for one panel.
             None if tunes && !stage.is_wide() => {}
             None => {
-                self.show_side_panel(ui);
+                self.show_side_panel(ui, stage.sheet());
                 stage.note_right(ui.available_rect_before_wrap());
             }
         }
@@ -268,8 +280,11 @@ impl App {
             tuner.panel(ui, &theme, &self.shown, self.selection.tile(), stage);
         }
         self.show_visit_bar(ui, &theme);
-        self.plots.show(ui, &theme, &self.shown, &self.selection, self.designer.as_mut());
-        let (frame, has_steps) = (egui::Frame::new(), self.has_steps());
+        let designer = self.designer.as_mut();
+        self.plots.show(ui, &theme, &self.shown, &self.selection, designer, stage.sheet());
+        // An open panel leaves a window in a hand no room for them.
+        let has_steps = self.has_steps() && !self.window.unfolded.is_any();
+        let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
             stage.canvas = ui.available_rect_before_wrap();
             let on_floor = OnFloor {

@@ -7,6 +7,7 @@ use eframe::egui;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{Key, Modifiers, PopupCloseBehavior, Ui};
 
+use super::handheld::{fit_targets, menu_content};
 use super::icons::{self, Icon};
 use super::messages::WindowMessages;
 use super::style;
@@ -47,6 +48,8 @@ pub(crate) struct Appearance {
     enlarged: f32,
     /// The zoom factor that egui received last.
     applied: Option<f32>,
+    /// Whether buttons have the size of fingers.
+    for_fingers: bool,
 }
 
 impl Appearance {
@@ -64,7 +67,7 @@ impl Appearance {
             format!("{name} is not used: {wrong}")
         });
         let choice = read.ok().flatten().unwrap_or(usual);
-        (Self { choice, file, enlarged: 1.0, applied: None }, wrong)
+        (Self { choice, file, enlarged: 1.0, applied: None, for_fingers: false }, wrong)
     }
 
     /// Whether the floor shows the first steps of a new user.
@@ -97,6 +100,16 @@ impl Appearance {
         if self.applied != Some(all) {
             self.applied = Some(all);
             ctx.set_zoom_factor(all);
+        }
+    }
+}
+
+impl Appearance {
+    /// Gives buttons the size of fingers, or that of a mouse pointer again.
+    pub(super) fn fit(&mut self, ctx: &egui::Context, for_fingers: bool) {
+        if self.for_fingers != for_fingers {
+            self.for_fingers = for_fingers;
+            fit_targets(ctx, for_fingers);
         }
     }
 }
@@ -149,35 +162,37 @@ impl Appearance {
         let button = MenuButton::new(icons::short(Icon::SunMoon, "Appearance", is_compact)).config(config);
         let (button, _) = button.ui(ui, |ui| {
             ui.set_width(190.0);
-            for (part, theme) in [("Window", &mut choice.window), ("Projected", &mut choice.projected)] {
-                ui.label(quiet(&window, part));
-                for (name, one) in Theme::NAMED {
-                    let radio = ui.radio_value(theme, one, name);
-                    radio.widget_info(|| {
-                        let spoken = format!("{part}: {name}");
-                        egui::WidgetInfo::selected(
-                            egui::accesskit::Role::RadioButton,
-                            true,
-                            *theme == one,
-                            spoken,
-                        )
-                    });
-                }
-                ui.separator();
-            }
-            ui.label(quiet(
-                &window,
-                format!("Text {} %: Ctrl +, Ctrl -, Ctrl 0", 10 * u32::from(choice.text)),
-            ));
-            ui.horizontal(|ui| {
-                for (name, text) in
-                    [("Smaller", choice.text - 1), ("Usual", USUAL), ("Larger", choice.text + 1)]
-                {
-                    let can = (TENTHS.0..=TENTHS.1).contains(&text) && text != choice.text;
-                    if ui.add_enabled(can, egui::Button::new(name)).clicked() {
-                        choice.text = text;
+            menu_content(ui, |ui| {
+                for (part, theme) in [("Window", &mut choice.window), ("Projected", &mut choice.projected)] {
+                    ui.label(quiet(&window, part));
+                    for (name, one) in Theme::NAMED {
+                        let radio = ui.radio_value(theme, one, name);
+                        radio.widget_info(|| {
+                            let spoken = format!("{part}: {name}");
+                            egui::WidgetInfo::selected(
+                                egui::accesskit::Role::RadioButton,
+                                true,
+                                *theme == one,
+                                spoken,
+                            )
+                        });
                     }
+                    ui.separator();
                 }
+                ui.label(quiet(
+                    &window,
+                    format!("Text {} %: Ctrl +, Ctrl -, Ctrl 0", 10 * u32::from(choice.text)),
+                ));
+                ui.horizontal(|ui| {
+                    for (name, text) in
+                        [("Smaller", choice.text - 1), ("Usual", USUAL), ("Larger", choice.text + 1)]
+                    {
+                        let can = (TENTHS.0..=TENTHS.1).contains(&text) && text != choice.text;
+                        if ui.add_enabled(can, egui::Button::new(name)).clicked() {
+                            choice.text = text;
+                        }
+                    }
+                });
             });
         });
         icons::named(button, "Appearance");
@@ -206,6 +221,9 @@ impl Appearance {
         }
         self.choice = choice;
         style::apply(ctx, &choice.window);
+        if self.for_fingers {
+            fit_targets(ctx, true);
+        }
         ctx.request_repaint();
         let kept = self.file.as_deref().map(|file| {
             file.parent().map_or(Ok(()), platform::make_folder).map_err(|error| error.to_string())?;

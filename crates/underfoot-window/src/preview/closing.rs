@@ -137,7 +137,7 @@ fn ask(ctx: &Context, name: &str) -> Closing {
     let mut decided = Closing::Asks;
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(18);
     let modal = Modal::new(egui::Id::unique("before closing")).frame(frame).show(ctx, |ui| {
-        ui.set_width(380.0);
+        ui.set_width(380.0_f32.min(ctx.content_rect().width() - 60.0));
         ui.label(egui::RichText::new(format!("Save {name} before closing?")).size(16.0).strong());
         ui.add_space(4.0);
         ui.label("It has changes that are not in its file.");

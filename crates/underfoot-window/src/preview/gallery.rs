@@ -6,6 +6,7 @@ use eframe::egui::{
     self, Button, FontId, Key, Modal, Rect, RichText, ScrollArea, Sense, StrokeKind, Ui, WidgetInfo, vec2,
 };
 
+use super::handheld::is_for_fingers;
 use super::icons::Icon;
 use super::style::{panel_colour, quiet, selected_ground};
 use underfoot::engine::Snapshot;
@@ -29,6 +30,9 @@ const LINE: f32 = 15.0;
 
 /// Room between the gallery and the edges of the window, in points.
 const MARGIN: egui::Vec2 = vec2(36.0, 48.0);
+
+/// The same in a window in a hand, whose room the frame of the gallery takes.
+const HAND_MARGIN: egui::Vec2 = vec2(22.0, 28.0);
 
 /// The layouts that the window can open.
 #[derive(Default)]
@@ -101,7 +105,8 @@ impl LayoutGallery {
         let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16);
         let (mut chosen, mut is_done) = (None, false);
         let modal = Modal::new(egui::Id::unique("gallery")).frame(frame).show(ctx, |ui| {
-            let room = ctx.content_rect().size() - 2.0 * MARGIN;
+            let margin = if is_for_fingers(ui) { HAND_MARGIN } else { MARGIN };
+            let room = ctx.content_rect().size() - 2.0 * margin;
             let grid = CardGrid::of(room.x, geometry);
             ui.set_width(grid.width());
             // Otherwise the dialogue has the usual height of an area.

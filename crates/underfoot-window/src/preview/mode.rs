@@ -78,15 +78,15 @@ impl App {
         }
     }
 
-    /// One switch with a button for each mode.
-    pub(super) fn mode_switch(&mut self, ui: &mut Ui) {
+    /// One switch with a button for each mode; compact ones have icons alone.
+    pub(super) fn mode_switch(&mut self, ui: &mut Ui, is_compact: bool) {
         let present = self.mode();
         let mut chosen = None;
         ui.scope(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             for mode in WindowMode::ALL {
                 let (is_on, why_not) = (mode == present, self.why_not(mode));
-                let text = icons::with(mode.icon(), mode.name());
+                let text = icons::short(mode.icon(), mode.name(), is_compact);
                 let button = Button::selectable(is_on, text).frame_when_inactive(true);
                 let button = ui.add_enabled(why_not.is_none(), button);
                 button.widget_info(|| {

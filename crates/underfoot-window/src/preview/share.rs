@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{self, Color32, Modal, Rect, RichText, Sense, TextEdit, Ui, WidgetInfo, vec2};
+use eframe::egui::{self, Color32, Modal, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 use qrcodegen::{Mask, QrCode, QrCodeEcc, QrSegment, Version};
 
+use super::handheld::is_for_fingers;
 use super::icons::{Icon, named, short};
 use super::style::quiet;
 use crate::link::SharedVisit;
@@ -41,6 +42,9 @@ pub struct LayoutToShare {
 
 /// Side of a QR code with its quiet zone, in points.
 const CODE: f32 = 300.0;
+
+/// Width of the button that copies, for fingers, in points.
+const COPY: f32 = 110.0;
 
 /// Modules of the quiet zone around a QR code, which its standard asks for.
 const ZONE: i32 = 4;
@@ -123,11 +127,18 @@ impl Share {
         let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(18);
         let mut is_done = false;
         let modal = Modal::new(egui::Id::unique("share")).frame(frame).show(ctx, |ui| {
-            ui.set_width(CODE + 60.0);
+            let room = ctx.content_rect().size();
+            ui.set_width((CODE + 60.0).min(room.x - 52.0));
             let subject = if given.has_visit { "Share this visit" } else { "Share this layout" };
             ui.label(RichText::new(subject).size(16.0).strong());
             ui.add_space(4.0);
-            given.show(ui, theme);
+            if is_for_fingers(ui) {
+                // A low screen shows the code when it scrolls.
+                let most = room.y - 170.0;
+                ScrollArea::vertical().max_height(most).show(ui, |ui| given.show(ui, theme));
+            } else {
+                given.show(ui, theme);
+            }
             ui.add_space(8.0);
             is_done = ui.button("Close").clicked();
         });
@@ -155,7 +166,9 @@ impl GivenLink {
         ui.add_space(6.0);
         ui.horizontal(|ui| {
             let mut text = link.as_str();
-            let field = ui.add(TextEdit::singleline(&mut text).desired_width(CODE - 30.0));
+            let width = if is_for_fingers(ui) { ui.available_width() - COPY } else { CODE - 30.0 };
+            let field =
+                ui.add(TextEdit::singleline(&mut text).desired_width(width).align(egui::Align2::LEFT_CENTER));
             field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Link"));
             let copy = named(ui.button(short(Icon::Copy, "Copy", false)), "Copy");
             if ui.memory(|memory| memory.focused().is_none()) {
@@ -187,7 +200,8 @@ fn draw(ui: &mut Ui, code: &QrCode) {
     let modules = code.size() + 2 * ZONE;
     // Whole pixels, so that no module is wider than another.
     let scale = ui.ctx().pixels_per_point();
-    let module = (CODE * scale / modules as f32).floor().max(1.0) / scale;
+    let wanted = CODE.min(ui.available_width());
+    let module = (wanted * scale / modules as f32).floor().max(1.0) / scale;
     let side = module * modules as f32;
     let (area, response) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "QR code of the link"));

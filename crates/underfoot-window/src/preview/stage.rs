@@ -1,12 +1,14 @@
 //! The part of the window into which the floor is fitted: the same whatever mode and panels are open, so that the
-//! floor stays where it is. Panels cover a part of it where the window has no room beside it.
+//! floor stays where it is. Panels cover a part of it where the window has no room beside it; in a window in a hand, the
+//! floor fills what the open panel leaves.
 
 use eframe::egui::Rect;
 
+use super::handheld::{PanelSheet, WindowHold};
 use super::zoom::ViewRoom;
 
 /// Width of a window, in points, that has room for the floor between the panels of all modes.
-const WIDE: f32 = 1010.0;
+pub(super) const WIDE: f32 = 1010.0;
 
 /// Width of a window, in points, that has room for the floor beside one panel; narrower ones show panels over it.
 pub(super) const BESIDE: f32 = 669.0;
@@ -59,12 +61,23 @@ pub(super) struct StageOfWindow {
     designs: bool,
     /// Whether the panel at the right is wanted.
     pub(super) has_side: bool,
+    hold: WindowHold,
 }
 
 impl StageOfWindow {
     /// The stage in `room`, the part of the window between the bars of all modes.
     pub(super) fn new(room: Rect, widths: PanelWidths, designs: bool, has_side: bool) -> Self {
-        Self { room, canvas: room, widths, designs, has_side }
+        Self { room, canvas: room, widths, designs, has_side, hold: WindowHold::Desk }
+    }
+
+    /// The same in a window that is held so.
+    pub(super) fn held(self, hold: WindowHold) -> Self {
+        Self { hold, ..self }
+    }
+
+    /// The place of the open panel in a window in a hand that has no room beside the floor.
+    pub(super) fn sheet(&self) -> Option<PanelSheet> {
+        self.hold.sheet(self.room)
     }
 
     /// Whether the window has room for the panels of all modes; a narrow one shows one panel at a time, at the right.
@@ -87,11 +100,18 @@ impl StageOfWindow {
 
     /// Takes in the width of the panel at the right of `free`.
     pub(super) fn note_right(&mut self, free: Rect) {
+        if self.sheet().is_some() {
+            return;
+        }
         self.widths.right = self.widths.right.max(self.room.right() - free.right());
     }
 
     /// The area for the floor, and the part of the window in which it can be seen.
     pub(super) fn view_room(&self) -> ViewRoom {
+        if self.sheet().is_some() {
+            let free = self.canvas.shrink(MARGIN);
+            return ViewRoom { stage: free, free };
+        }
         let stage = self.widths.stage(self.room, self.designs);
         let mut free = self.canvas;
         free.min.x = free.left().max(stage.left());

@@ -8,6 +8,7 @@ use eframe::egui::{
     Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2,
 };
 
+use super::handheld::is_for_fingers;
 use super::icons::{self, Icon};
 use underfoot::layout::Colour;
 use underfoot_scene::egui_painter::color;
@@ -19,6 +20,9 @@ pub(crate) fn fonts() -> egui::FontDefinitions {
     icons::add_to(&mut fonts);
     fonts
 }
+
+/// Room around the text of a button, in points.
+pub(super) const BUTTON_PADDING: egui::Vec2 = vec2(9.0, 4.0);
 
 /// Gives every widget of `ctx` the colours of `theme`.
 pub(crate) fn apply(ctx: &egui::Context, theme: &Theme) {
@@ -36,7 +40,7 @@ pub(crate) fn apply(ctx: &egui::Context, theme: &Theme) {
         }
         style.text_styles.insert(TextStyle::Monospace, FontId::new(12.5, FontFamily::Monospace));
         style.spacing.item_spacing = vec2(8.0, 5.0);
-        style.spacing.button_padding = vec2(9.0, 4.0);
+        style.spacing.button_padding = BUTTON_PADDING;
         style.spacing.scroll = egui::style::ScrollStyle::thin();
         style.interaction.selectable_labels = false;
         visuals(&mut style.visuals, theme);
@@ -123,9 +127,14 @@ pub(crate) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnc
     heading.response.rect
 }
 
+/// A button of the height of a line of text, unless fingers use it.
+pub(super) fn small_button(ui: &mut Ui, text: &str) -> egui::Response {
+    if is_for_fingers(ui) { ui.button(text) } else { ui.small_button(text) }
+}
+
 /// A button that plots the value beside it, called `name`; returns whether it was clicked.
 pub(super) fn plot_button(ui: &mut Ui, name: &str) -> bool {
-    let button = ui.small_button("Plot");
+    let button = small_button(ui, "Plot");
     button.widget_info(|| {
         egui::WidgetInfo::labeled(egui::accesskit::Role::Button, true, format!("Plot {name}"))
     });

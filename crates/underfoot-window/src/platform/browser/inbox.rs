@@ -1,7 +1,9 @@
 //! Files of the computer that the user drops on the page or chooses, and files that the page gives away.
+//!
+//! The window decides which of the files it keeps in the storage of the browser.
 
 use std::cell::OnceCell;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::rc::Rc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -12,10 +14,12 @@ use wasm_bindgen::{JsCast, JsValue};
 use web_sys::{Blob, File, HtmlAnchorElement, HtmlInputElement, Url};
 
 use super::dropped::{CHOOSE, FILES, FileAt, PageListener, SAVED, TOLD, dispatch, files_of};
-use super::files::save;
 use crate::platform::{Arrival, Incoming, placed};
 
-/// Copies files of the computer into the storage of the browser, each under its own path.
+/// Maximum length of the texts of one drop, in bytes; the storage of a browser holds some 5 MB.
+const MOST_TEXT: usize = 8 << 20;
+
+/// Takes in files of the computer, each under its own path.
 pub(crate) struct FileInbox {
     come: Receiver<Arrival>,
     door: Door,
@@ -40,7 +44,7 @@ impl FileInbox {
         let door = Door { sent, ctx: Rc::default() };
         let (dropped, told) = (door.clone(), door.clone());
         let listeners = [
-            PageListener::new(FILES, move |detail| dropped.copy(files_of(&detail))),
+            PageListener::new(FILES, move |detail| dropped.read(files_of(&detail))),
             PageListener::new(TOLD, move |detail| {
                 if let Some(text) = detail.as_string() {
                     told.give(Arrival::Told(text));
@@ -80,28 +84,40 @@ impl Door {
         }
     }
 
-    /// Copies `files` into the storage, and reports the layouts among them: the first by name comes last, and stays
-    /// open.
-    fn copy(&self, mut files: Vec<FileAt>) {
+    /// Reads `files` and passes their texts on: kinds and effects before the layouts that may be made of them, and the
+    /// layouts from the last by name to the first, which stays open.
+    fn read(&self, mut files: Vec<FileAt>) {
         let door = self.clone();
         files.sort_by(|(one, _), (other, _)| one.cmp(other));
         wasm_bindgen_futures::spawn_local(async move {
             if files.is_empty() {
                 return door.give(Arrival::Refused("there is no file in it whose name ends in .ron".into()));
             }
-            let (mut layouts, mut parts) = (Vec::new(), 0);
+            let (mut layouts, mut parts, mut length) = (Vec::new(), Vec::new(), 0);
             for (path, file) in files {
-                match stored(&path, &file).await {
-                    Ok((Incoming::Layout, path)) => layouts.push(path),
-                    Ok((Incoming::Part, _)) => parts += 1,
+                match text_of(&path, &file).await {
+                    Ok(text) if length + text.len() > MOST_TEXT => {
+                        let most = MOST_TEXT >> 20;
+                        let wrong =
+                            format!("{path} and what follows is not opened: it is more than {most} MB");
+                        door.give(Arrival::Refused(wrong));
+                        break;
+                    }
+                    Ok(text) => {
+                        length += text.len();
+                        let (content, place) = placed(Path::new(&path), &text);
+                        match content {
+                            Incoming::Layout => layouts.push((place, text)),
+                            Incoming::Part => parts.push((place, text)),
+                        }
+                    }
                     Err(wrong) => door.give(Arrival::Refused(format!("{path} is not opened: {wrong}"))),
                 }
             }
-            // Before the layouts that may be made of them.
-            if parts > 0 {
+            if !parts.is_empty() {
                 door.give(Arrival::Parts(parts));
             }
-            layouts.into_iter().rev().for_each(|path| door.give(Arrival::Layout(path)));
+            layouts.into_iter().rev().for_each(|(path, text)| door.give(Arrival::LayoutText(path, text)));
         });
     }
 }
@@ -120,7 +136,7 @@ fn ask(door: Door) -> Result<(), JsValue> {
         let files: Vec<FileAt> = files.map(|file| (file.name(), file)).collect();
         // An empty choice is a change of mind.
         if !files.is_empty() {
-            door.copy(files);
+            door.read(files);
         }
     });
     input.set_onchange(Some(take.unchecked_ref()));
@@ -128,10 +144,9 @@ fn ask(door: Door) -> Result<(), JsValue> {
     Ok(())
 }
 
-/// Copies `file` into the storage; returns its content and its path there.
-async fn stored(path: &str, file: &File) -> Result<(Incoming, PathBuf), String> {
-    let path = Path::new(path);
-    match path.extension().and_then(|ending| ending.to_str()) {
+/// The text of `file`, which came from `path`.
+async fn text_of(path: &str, file: &File) -> Result<String, String> {
+    match Path::new(path).extension().and_then(|ending| ending.to_str()) {
         Some("ron") => {}
         Some("mcap") => {
             return Err("a recording is played if it is dropped on the floor alone".into());
@@ -144,10 +159,7 @@ async fn stored(path: &str, file: &File) -> Result<(Incoming, PathBuf), String> 
     let bytes = wasm_bindgen_futures::JsFuture::from(file.array_buffer());
     let bytes = bytes.await.map_err(|error| words(&error))?;
     let text = String::from_utf8(js_sys::Uint8Array::new(&bytes).to_vec());
-    let text = text.map_err(|_| "it is not a text in UTF-8".to_owned())?;
-    let (content, place) = placed(path, &text);
-    save(&text, &place).map_err(|error| error.to_string())?;
-    Ok((content, place))
+    text.map_err(|_| "it is not a text in UTF-8".to_owned())
 }
 
 /// Reports a layout that the user has saved at `path`: the page puts it into its own file too, if it can, and tells.

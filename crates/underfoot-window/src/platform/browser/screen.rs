@@ -1,4 +1,4 @@
-//! Reports of the screen for the scripts of a page.
+//! The screen of a page: its reports for scripts, and whether fingers use it.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,4 +23,10 @@ pub(crate) fn put_report(report: &str, place: &Path, _window: Option<u64>) -> io
     let name = place.display().to_string();
     let put = js_sys::Reflect::set(&js_sys::global(), &name.into(), &report.into());
     put.map(drop).map_err(|_| io::Error::other("there is no page"))
+}
+
+/// Whether fingers are the usual pointers of this screen.
+pub(crate) fn has_coarse_pointer() -> bool {
+    let asked = web_sys::window().and_then(|window| window.match_media("(pointer: coarse)").ok().flatten());
+    asked.is_some_and(|query| query.matches())
 }

@@ -1,4 +1,4 @@
-//! Reports of the screen as files.
+//! The screen of a desktop: its reports as files; a mouse uses it.
 
 use std::fs;
 use std::io;
@@ -23,4 +23,9 @@ pub(crate) fn put_report(report: &str, place: &Path, window: Option<u64>) -> io:
     let new = path.with_extension("new");
     fs::write(&new, report)?;
     fs::rename(&new, path)
+}
+
+/// Whether fingers are the usual pointers of this screen; a mouse is on a desktop, until a finger comes.
+pub(crate) const fn has_coarse_pointer() -> bool {
+    false
 }

@@ -5,6 +5,7 @@ use eframe::egui::{Color32, FontId, Grid, Margin, Panel, PopupCloseBehavior, Ric
 
 use crate::preview::OpenSetUp;
 use crate::preview::appearance::Appearance;
+use crate::preview::handheld::menu_content;
 use crate::preview::icons::{Icon, named, short};
 use crate::preview::messages::WindowMessages;
 use crate::preview::style::{panel_frame, quiet};
@@ -139,28 +140,30 @@ pub(super) fn help_menu(
     let (button, _) =
         MenuButton::new(short(Icon::CircleQuestionMark, "Help", is_compact)).config(config).ui(ui, |ui| {
             ui.set_min_width(260.0);
-            Grid::new("help").spacing([14.0, 3.0]).show(ui, |ui| {
-                for (key, does) in activity.steps() {
-                    ui.label(RichText::new(*key).color(color(theme.ink)));
-                    ui.label(quiet(theme, *does));
-                    ui.end_row();
+            menu_content(ui, |ui| {
+                Grid::new("help").spacing([14.0, 3.0]).min_row_height(LETTERS).show(ui, |ui| {
+                    for (key, does) in activity.steps() {
+                        ui.label(RichText::new(*key).color(color(theme.ink)));
+                        ui.label(quiet(theme, *does));
+                        ui.end_row();
+                    }
+                });
+                ui.separator();
+                let mut has_steps = appearance.has_steps();
+                if ui.checkbox(&mut has_steps, "First steps on the floor").changed() {
+                    appearance.show_steps(ui.ctx(), has_steps, messages);
+                }
+                if let Some(open) = set_up {
+                    let button = ui.button("Set up a real floor");
+                    if button
+                        .on_hover_text("Finds boards, wiring and calibration, in a window of its own")
+                        .clicked()
+                    {
+                        messages.note(open());
+                        ui.close();
+                    }
                 }
             });
-            ui.separator();
-            let mut has_steps = appearance.has_steps();
-            if ui.checkbox(&mut has_steps, "First steps on the floor").changed() {
-                appearance.show_steps(ui.ctx(), has_steps, messages);
-            }
-            if let Some(open) = set_up {
-                let button = ui.button("Set up a real floor");
-                if button
-                    .on_hover_text("Finds boards, wiring and calibration, in a window of its own")
-                    .clicked()
-                {
-                    messages.note(open());
-                    ui.close();
-                }
-            }
         });
     named(button, "Help");
 }

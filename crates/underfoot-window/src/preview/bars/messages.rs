@@ -9,9 +9,10 @@ use eframe::egui::{
 
 use super::pills::file_news;
 use crate::preview::feed::Warnings;
+use crate::preview::handheld::is_for_fingers;
 use crate::preview::messages::{FileNote, WindowMessages};
 use crate::preview::shown::ShownFloor;
-use crate::preview::style::{panel_colour, pill, quiet};
+use crate::preview::style::{panel_colour, pill, quiet, small_button};
 use underfoot::layout::Colour;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
@@ -83,7 +84,7 @@ impl MessageStack<'_> {
         for (index, note) in messages.notes.iter().enumerate() {
             self.frame(self.theme.warning).show(ui, |ui| {
                 ui.horizontal(|ui| {
-                    let width = ui.available_width() - 60.0;
+                    let width = ui.available_width() - if is_for_fingers(ui) { 80.0 } else { 60.0 };
                     ui.allocate_ui_with_layout(
                         vec2(width, 20.0),
                         Layout::left_to_right(Align::Center),
@@ -92,7 +93,7 @@ impl MessageStack<'_> {
                             ui.add(egui::Label::new(RichText::new(note).color(color(self.theme.ink))).wrap());
                         },
                     );
-                    let button = ui.small_button("Hide");
+                    let button = small_button(ui, "Hide");
                     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Hide: {note}")));
                     if button.clicked() {
                         put_away = Some(index);

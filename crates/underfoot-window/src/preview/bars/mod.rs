@@ -1,5 +1,6 @@
 //! The bars at the window's edges, and the messages over the floor.
 
+mod hand;
 mod help;
 mod messages;
 mod pills;

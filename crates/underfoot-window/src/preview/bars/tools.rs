@@ -5,6 +5,7 @@ use eframe::egui::{Button, Key, PopupCloseBehavior, RichText, Ui};
 
 use crate::preview::app::App;
 use crate::preview::feed::PreviewCommand;
+use crate::preview::handheld::menu_content;
 use crate::preview::icons::{Icon, named, short, with};
 use crate::preview::mode::WindowMode;
 use crate::preview::shown::ShownFloor;
@@ -58,20 +59,24 @@ fn layers_menu(ui: &mut Ui, show: &mut Show, is_compact: bool) {
     let (button, _) =
         MenuButton::new(short(Icon::Layers, "Layers", is_compact)).config(config).ui(ui, |ui| {
             ui.set_min_width(170.0);
-            for (name, layer) in Show::LAYERS {
-                ui.checkbox(layer(show), name);
-            }
-            ui.separator();
-            ui.horizontal(|ui| {
-                if ui.button("All").clicked() {
-                    Show::LAYERS.iter().for_each(|(_, layer)| *layer(show) = true);
-                }
-                if ui.button("Usual").clicked() {
-                    *show = Show::WINDOW;
-                }
-            });
+            menu_content(ui, |ui| layers(ui, show));
         });
     named(button, "Layers");
+}
+
+fn layers(ui: &mut Ui, show: &mut Show) {
+    for (name, layer) in Show::LAYERS {
+        ui.checkbox(layer(show), name);
+    }
+    ui.separator();
+    ui.horizontal(|ui| {
+        if ui.button("All").clicked() {
+            Show::LAYERS.iter().for_each(|(_, layer)| *layer(show) = true);
+        }
+        if ui.button("Usual").clicked() {
+            *show = Show::WINDOW;
+        }
+    });
 }
 
 /// Mutes or unmutes everything, unless a text field has the focus.

@@ -3,6 +3,7 @@
 use eframe::egui;
 use eframe::egui::{Align, Layout, Margin, Panel, RichText, Ui, vec2};
 
+use super::hand::hand_bar;
 use super::help::help_menu;
 use super::pills::{link_state, mutes};
 use crate::preview::app::App;
@@ -36,7 +37,7 @@ pub(in crate::preview) struct TopBar {
     /// Whether the warnings about the layout are listed over the floor.
     pub(in crate::preview) lists_warnings: bool,
     /// Width of the part at the right in the last frame, in points.
-    end_width: f32,
+    pub(super) end_width: f32,
     tools: ToolsWidth,
 }
 
@@ -69,14 +70,14 @@ impl TopBar {
         Self { gallery, ..Self::default() }
     }
 
-    /// Shows the layout's title, as a button that opens the gallery if there is a choice.
-    fn title(&mut self, ui: &mut Ui, theme: &Theme, title: &str) {
+    /// Shows the layout's title, as a button of this width that opens the gallery if there is a choice.
+    pub(super) fn title(&mut self, ui: &mut Ui, theme: &Theme, title: &str, width: f32) {
         let title = in_drawn_order(title);
         if self.gallery.is_empty() {
             let text = RichText::new(title).size(15.0).strong().color(color(theme.ink));
             ui.add(egui::Label::new(text).truncate());
         } else {
-            self.gallery.button(ui, &title, TITLE);
+            self.gallery.button(ui, &title, width);
         }
     }
 }
@@ -99,13 +100,16 @@ impl App {
     /// Shows the bar; widgets come from left to right, which is the order of the keyboard too.
     pub(in crate::preview) fn show_top_bar(&mut self, ui: &mut Ui) {
         let theme = self.appearance.theme();
+        if self.window.hold.is_in_hand() {
+            return hand_bar(self, ui, &theme);
+        }
         let frame = panel_frame(&theme, Margin::symmetric(14, 6));
         Panel::top("top bar").frame(frame).resizable(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
             let has_two_lines = ui.available_width() < TWO_LINES;
             let is_compact = ui.available_width() < COMPACT;
             line(ui, |ui| {
-                self.mode_switch(ui);
+                self.mode_switch(ui, false);
                 ui.add_space(4.0);
                 self.heading(ui, &theme, is_compact);
                 if !has_two_lines {
@@ -156,7 +160,7 @@ impl App {
             if let Some(designer) = self.designer.as_ref().filter(|designer| designer.is_open) {
                 return file_name(ui, theme, designer);
             }
-            self.top_bar.title(ui, theme, &self.shown.layout().title);
+            self.top_bar.title(ui, theme, &self.shown.layout().title, TITLE);
         });
         if self.is_designing() || is_compact {
             return;

@@ -13,6 +13,7 @@ use crate::platform;
 use crate::preview::bars::{MessageStack, message_frame};
 use crate::preview::feed::LayoutCause;
 use crate::preview::gallery::LayoutGallery;
+use crate::preview::handheld::{is_for_fingers, menu_content, with_word};
 use crate::preview::icons::{self, Icon, icon_button};
 use crate::preview::shown::ShownFloor;
 use crate::preview::style::{is_entered, quiet, toggle};
@@ -20,12 +21,22 @@ use underfoot::floor::Rect;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
 
+/// Width of the field for a path in a window in a hand, in points.
+const PATH: f32 = 130.0;
+
+/// Width of the button Arrange for fingers, in points, rounded up.
+const ARRANGE: f32 = 90.0;
+
 /// The action of a menu entry.
 type Action = fn(&mut EditedLayout);
 
 impl Designer {
     /// Shows files, undo, arrangement and the number of problems, in the top bar.
     pub(in crate::preview) fn tools(&mut self, ui: &mut Ui, theme: &Theme, gallery: &mut LayoutGallery) {
+        if is_for_fingers(ui) {
+            let hint = "Things to put down on the floor";
+            with_word(ui, |ui| toggle(ui, &mut self.panes.shows_things, "Add", hint));
+        }
         self.files(ui, gallery);
         let (can_undo, can_redo) = (self.edited.document.can_undo(), self.edited.document.can_redo());
         let any = !self.edited.selected.is_empty();
@@ -44,16 +55,16 @@ impl Designer {
         if icon_button(ui, any, Icon::RotateCw, "Turn", "R, a quarter turn") {
             self.edited.turn();
         }
-        self.arrange(ui);
-        ui.menu_button("Show", |ui| {
-            ui.checkbox(&mut self.canvas.scale.shoes, "Shoes in true size");
-            ui.checkbox(&mut self.canvas.scale.reach, "How far feet reach");
+        with_word(ui, |ui| {
+            self.arrange(ui);
+            ui.menu_button("Show", |ui| menu_content(ui, |ui| self.show_menu(ui)));
         });
         let hint = "see the whole floor; the wheel zooms, Space and drag moves";
         if icon_button(ui, true, Icon::Maximize, "Fit", hint) {
             self.canvas.fit();
         }
-        toggle(ui, &mut self.text.is_open, "Text", "The layout as text, beside the floor");
+        let hint = "The layout as text, beside the floor";
+        with_word(ui, |ui| toggle(ui, &mut self.text.is_open, "Text", hint));
         self.count(ui, theme);
     }
 
@@ -72,58 +83,64 @@ impl Designer {
     }
 
     fn files(&mut self, ui: &mut Ui, gallery: &mut LayoutGallery) {
-        ui.menu_button("File", |ui| {
-            ui.menu_button("New", |ui| {
-                let geometry = self.edited.document.floor().geometry;
-                ui.label(format!("for a floor of {} x {} tiles", geometry.columns(), geometry.rows()))
-                    .on_hover_text(
-                        "The window's floor; underfoot preview --grid 8x4 opens it with another one",
-                    );
-                for template in Template::ALL {
-                    if ui.button(template.name()).clicked() {
-                        let text = template.text(&self.edited.document.floor().geometry);
-                        self.begin_untitled("untitled.ron", &text);
-                        ui.close();
-                    }
-                }
-            });
-            if ui.add_enabled(!gallery.is_empty(), egui::Button::new("Gallery")).clicked() {
-                gallery.open();
-                ui.close();
-            }
-            let recent = shelf::recent(&self.storage.state);
-            ui.add_enabled_ui(!recent.is_empty(), |ui| {
-                ui.menu_button("Open recent", |ui| {
-                    for path in &recent {
-                        let name = path.file_name().unwrap_or_default().to_string_lossy();
-                        if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                            self.open(path);
-                            ui.close();
-                        }
-                    }
-                });
-            });
-            for (to, name, keys) in
-                [(Ask::Open, "Open file", "Ctrl+O"), (Ask::SaveAs, "Save as", "Ctrl+Shift+S")]
-            {
-                if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
-                    match to {
-                        Ask::Open => self.ask_to_open(),
-                        Ask::SaveAs => self.ask_for(Ask::SaveAs),
-                    }
-                    ui.close();
-                }
-            }
-            if platform::GIVES && ui.button("Download").clicked() {
-                if let Err(wrong) = platform::give(&self.name(), &self.file_text()) {
-                    self.edited.complain(format!("the browser takes no file: {wrong}"));
-                }
-                ui.close();
-            }
+        with_word(ui, |ui| {
+            ui.menu_button("File", |ui| menu_content(ui, |ui| self.file_menu(ui, gallery)));
         });
         let can_save = !self.is_saved() || self.storage.file.path().is_none() || self.storage.file.is_new();
         if icons::icon_button(ui, can_save, Icon::Save, "Save", "Ctrl+S") {
             self.save();
+        }
+    }
+
+    fn show_menu(&mut self, ui: &mut Ui) {
+        ui.checkbox(&mut self.canvas.scale.shoes, "Shoes in true size");
+        ui.checkbox(&mut self.canvas.scale.reach, "How far feet reach");
+    }
+
+    fn file_menu(&mut self, ui: &mut Ui, gallery: &mut LayoutGallery) {
+        ui.menu_button("New", |ui| {
+            let geometry = self.edited.document.floor().geometry;
+            ui.label(format!("for a floor of {} x {} tiles", geometry.columns(), geometry.rows()))
+                .on_hover_text("The window's floor; underfoot preview --grid 8x4 opens it with another one");
+            for template in Template::ALL {
+                if ui.button(template.name()).clicked() {
+                    let text = template.text(&self.edited.document.floor().geometry);
+                    self.begin_untitled("untitled.ron", &text);
+                    ui.close();
+                }
+            }
+        });
+        if ui.add_enabled(!gallery.is_empty(), egui::Button::new("Gallery")).clicked() {
+            gallery.open();
+            ui.close();
+        }
+        let recent = shelf::recent(&self.storage.state);
+        ui.add_enabled_ui(!recent.is_empty(), |ui| {
+            ui.menu_button("Open recent", |ui| {
+                for path in &recent {
+                    let name = path.file_name().unwrap_or_default().to_string_lossy();
+                    if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                        self.open(path);
+                        ui.close();
+                    }
+                }
+            });
+        });
+        for (to, name, keys) in [(Ask::Open, "Open file", "Ctrl+O"), (Ask::SaveAs, "Save as", "Ctrl+Shift+S")]
+        {
+            if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
+                match to {
+                    Ask::Open => self.ask_to_open(),
+                    Ask::SaveAs => self.ask_for(Ask::SaveAs),
+                }
+                ui.close();
+            }
+        }
+        if platform::GIVES && ui.button("Download").clicked() {
+            if let Err(wrong) = platform::give(&self.name(), &self.file_text()) {
+                self.edited.complain(format!("the browser takes no file: {wrong}"));
+            }
+            ui.close();
         }
     }
 
@@ -133,45 +150,51 @@ impl Designer {
         let (mut wanted, mut does) = (None, None);
         let is_group = matches!(items[..], [item] if item.is_group);
         let count = areas.len();
+        // This part of the line is not wrapped by itself.
+        if is_for_fingers(ui) && ui.available_size_before_wrap().x < ARRANGE {
+            ui.end_row();
+        }
         ui.add_enabled_ui(count > 0, |ui| {
             ui.menu_button("Arrange", |ui| {
-                let entries: [(bool, &str, &str, Action); 7] = [
-                    (count > 1, "Make alike", "Ctrl+E", EditedLayout::make_alike),
-                    (count > 0, "Group", "Ctrl+G", EditedLayout::group),
-                    (is_group, "Ungroup", "Ctrl+Shift+G", EditedLayout::ungroup),
-                    (count == 1, "To the front", "Ctrl+]", |edited| edited.reorder(false)),
-                    (count == 1, "To the back", "Ctrl+[", |edited| edited.reorder(true)),
-                    (true, "Lock or unlock", "Ctrl+L", |edited| {
-                        edited.turn_lock(&edited.selected.clone());
-                    }),
-                    (true, "Hide or show", "Ctrl+H", |edited| {
-                        edited.turn_hidden(&edited.selected.clone());
-                    }),
-                ];
-                for (is_on, name, keys, action) in entries {
-                    let button = egui::Button::new(name).shortcut_text(keys);
-                    if ui.add_enabled(is_on, button).clicked() {
-                        does = Some(action);
-                        ui.close();
-                    }
-                }
-                ui.separator();
-                ui.add_enabled_ui(count > 1, |ui| {
-                    let names =
-                        ["West edges", "Centres", "East edges", "South edges", "Middles", "North edges"];
-                    for (how, name) in Align::ALL.into_iter().zip(names) {
-                        if ui.button(format!("Align {}", name.to_lowercase())).clicked() {
-                            wanted = Some(align(&areas, how));
+                menu_content(ui, |ui| {
+                    let entries: [(bool, &str, &str, Action); 7] = [
+                        (count > 1, "Make alike", "Ctrl+E", EditedLayout::make_alike),
+                        (count > 0, "Group", "Ctrl+G", EditedLayout::group),
+                        (is_group, "Ungroup", "Ctrl+Shift+G", EditedLayout::ungroup),
+                        (count == 1, "To the front", "Ctrl+]", |edited| edited.reorder(false)),
+                        (count == 1, "To the back", "Ctrl+[", |edited| edited.reorder(true)),
+                        (true, "Lock or unlock", "Ctrl+L", |edited| {
+                            edited.turn_lock(&edited.selected.clone());
+                        }),
+                        (true, "Hide or show", "Ctrl+H", |edited| {
+                            edited.turn_hidden(&edited.selected.clone());
+                        }),
+                    ];
+                    for (is_on, name, keys, action) in entries {
+                        let button = egui::Button::new(name).shortcut_text(keys);
+                        if ui.add_enabled(is_on, button).clicked() {
+                            does = Some(action);
                             ui.close();
                         }
                     }
-                    for (axis, name) in ["west to east", "south to north"].into_iter().enumerate() {
-                        let button = egui::Button::new(format!("Distribute {name}"));
-                        if ui.add_enabled(areas.len() > 2, button).clicked() {
-                            wanted = Some(distribute(&areas, axis));
-                            ui.close();
+                    ui.separator();
+                    ui.add_enabled_ui(count > 1, |ui| {
+                        let names =
+                            ["West edges", "Centres", "East edges", "South edges", "Middles", "North edges"];
+                        for (how, name) in Align::ALL.into_iter().zip(names) {
+                            if ui.button(format!("Align {}", name.to_lowercase())).clicked() {
+                                wanted = Some(align(&areas, how));
+                                ui.close();
+                            }
                         }
-                    }
+                        for (axis, name) in ["west to east", "south to north"].into_iter().enumerate() {
+                            let button = egui::Button::new(format!("Distribute {name}"));
+                            if ui.add_enabled(areas.len() > 2, button).clicked() {
+                                wanted = Some(distribute(&areas, axis));
+                                ui.close();
+                            }
+                        }
+                    });
                 });
             });
         });
@@ -280,7 +303,12 @@ impl Designer {
             ui.horizontal(|ui| {
                 let name = if asking.to == Ask::Open { "Open" } else { "Save as" };
                 ui.label(name);
-                let field = ui.add(egui::TextEdit::singleline(&mut asking.path).desired_width(300.0));
+                let width = if is_for_fingers(ui) { PATH } else { 300.0 };
+                let field = ui.add(
+                    egui::TextEdit::singleline(&mut asking.path)
+                        .desired_width(width)
+                        .align(egui::Align2::LEFT_CENTER),
+                );
                 field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Path"));
                 // Check this before the field regains the focus: after that, the loss of focus would be invisible.
                 let entered = is_entered(ui, &field);

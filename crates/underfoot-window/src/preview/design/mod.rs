@@ -3,6 +3,7 @@
 //! [`crate::edit`] defines the meaning of edits and the bytes that they change; this module holds the display and the
 //! input.
 
+mod arrivals;
 mod bar;
 mod canvas;
 mod changes;
@@ -39,6 +40,7 @@ use edited::{EditMessage, EditedLayout};
 
 use crate::edit::{Document, LayoutFile};
 use crate::platform::FileInbox;
+use crate::preview::handheld::PanelSheet;
 use crate::preview::share::LayoutToShare;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
@@ -113,6 +115,12 @@ struct Panes {
     is_led: bool,
     /// Whether the window shows one panel at a time, at the right.
     is_narrow: bool,
+    /// The place of the open panel in a window in a hand.
+    sheet: Option<PanelSheet>,
+    /// Whether a thing is in hand whose place is on the floor: the list folds, once the finger that took the thing is up.
+    puts_down: bool,
+    /// Whether the list of things is open, in a window in a hand.
+    shows_things: bool,
 }
 
 impl Panes {

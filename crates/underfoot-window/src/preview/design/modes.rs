@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Key, Ui};
 
+use super::arrivals::receive_file;
 use super::{Designer, Pane};
-use crate::platform::{self, Arrival};
+use crate::platform;
 use crate::preview::feed::{LayoutCause, PreviewCommand, Warnings};
 use crate::preview::floor_view::FloorFeet;
 use crate::preview::messages::FileNote;
@@ -65,25 +66,8 @@ impl Designer {
         if let Some(dropped) = ui.input(|i| i.raw.dropped_files.first().cloned()) {
             self.storage.inbox.take_dropped(&dropped);
         }
-        match self.storage.inbox.next(ui.ctx()) {
-            Some(Arrival::Layout(path)) if self.open(&path) => self.try_layout(shown, LayoutCause::Opened),
-            Some(Arrival::Layout(_)) => {
-                if let Some(message) = &self.edited.message {
-                    shown.messages.note(message.text.clone());
-                }
-            }
-            Some(Arrival::Parts(count)) => {
-                let parts = if count == 1 {
-                    "1 kind or effect is"
-                } else {
-                    &format!("{count} kinds and effects are")
-                };
-                shown.messages.note(format!("{parts} beside the layouts now"));
-                shown.messages.files_changed = true;
-            }
-            Some(Arrival::Refused(text) | Arrival::Told(text)) => shown.messages.note(text),
-            None => {}
-        }
+        let next = self.storage.inbox.next(ui.ctx());
+        receive_file(self, shown, next);
         if std::mem::take(&mut shown.messages.files_changed) {
             self.take_in_files(shown);
         }
@@ -155,18 +139,20 @@ impl Designer {
         // This frame shows the edits so far: records may have changed places.
         self.edited.refresh();
         self.panes.is_narrow = !stage.is_wide();
+        self.panes.sheet = stage.sheet();
+        let is_down = ui.input(|i| i.pointer.any_down() || i.pointer.any_released());
+        self.panes.puts_down = self.canvas.placing.is_some() && !is_down;
         let [things, fields, text] = self.panes_on_display(stage);
         if things {
             let canvas = &mut self.canvas;
             self.things.panel(ui, theme, palette, &mut self.edited, canvas, &mut self.panes);
         }
         if fields {
-            let widest = stage.widest();
-            self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes, widest);
+            self.inspector.panel(ui, theme, palette, &mut self.edited, &mut self.panes, stage);
         }
         stage.note(ui.available_rect_before_wrap());
         if text {
-            self.text.panel(ui, theme, &mut self.edited, &mut self.panes, stage.widest());
+            self.text.panel(ui, theme, &mut self.edited, &mut self.panes, stage);
         }
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
@@ -195,6 +181,10 @@ impl Designer {
         if stage.is_wide() {
             return [true, stage.has_side || pane == Some(Pane::Fields), text];
         }
+        if stage.sheet().is_some() {
+            let [things, fields] = [self.panes.shows_things && !self.panes.puts_down, stage.has_side];
+            return [things, fields && !things, text && !fields && !things];
+        }
         let is_selected = !self.edited.selected.is_empty();
         match pane {
             Some(Pane::Things | Pane::Floor) => [true, false, false],
@@ -202,6 +192,11 @@ impl Designer {
             _ if text => [false, false, true],
             _ => [!is_selected, is_selected && stage.has_side, false],
         }
+    }
+
+    /// Whether the list of things and the text are open, in a window in a hand.
+    pub(in crate::preview) fn sheets(&mut self) -> [&mut bool; 2] {
+        [&mut self.panes.shows_things, &mut self.text.is_open]
     }
 
     /// Selects the control that a foot used last, if it has used another one since the last time.

@@ -11,6 +11,8 @@ use eframe::egui::{Margin, Panel, ScrollArea, TextEdit, Ui, WidgetInfo};
 use super::edited::EditedLayout;
 use super::{Pane, Panes};
 use crate::edit::Address;
+use crate::preview::handheld::panel_at;
+use crate::preview::stage::StageOfWindow;
 use crate::preview::style::{panel_frame, quiet};
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::Theme;
@@ -40,11 +42,15 @@ impl Editor {
         theme: &Theme,
         edited: &mut EditedLayout,
         panes: &mut Panes,
-        widest: f32,
+        stage: &StageOfWindow,
     ) {
         let frame = panel_frame(theme, Margin { left: 10, right: 4, top: 6, bottom: 6 });
-        let panel = Panel::right("layout text").frame(frame).resizable(true);
-        panel.default_size(430.0).size_range(240.0_f32.min(widest)..=widest).show(ui, |ui| {
+        let panel = panel_at(stage.sheet(), || {
+            let widest = stage.widest();
+            let panel = Panel::right("layout text").resizable(true).default_size(430.0);
+            panel.size_range(240.0_f32.min(widest)..=widest)
+        });
+        panel.frame(frame).show(ui, |ui| {
             if let Some(problems) = self.problems.clone() {
                 let frame = egui::Frame::new().fill(color(theme.fault).gamma_multiply(0.08));
                 Panel::bottom("text problems").frame(frame.inner_margin(6)).show(ui, |ui| {

@@ -5,6 +5,7 @@ use eframe::egui::{
     Button, Label, Margin, Panel, ProgressBar, RichText, ScrollArea, TextEdit, Ui, WidgetInfo,
 };
 
+use super::super::handheld::{PanelSheet, panel_at};
 use super::super::shown::ShownFloor;
 use super::super::style::{is_entered, panel_frame, quiet, section, selectable};
 use super::{FloorCheck, Walk, felt_words};
@@ -35,11 +36,21 @@ impl FloorCheck {
     }
 
     /// The panel in place of the side panel, during a check; `led` if the mouse is a foot.
-    pub(in crate::preview) fn panel(&mut self, ui: &mut Ui, theme: &Theme, shown: &ShownFloor, led: bool) {
+    pub(in crate::preview) fn panel(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        shown: &ShownFloor,
+        led: bool,
+        sheet: Option<PanelSheet>,
+    ) {
         let mut wish = None;
         let frame = panel_frame(theme, Margin { left: 14, right: 10, top: 8, bottom: 8 });
-        let panel = Panel::right("check panel").frame(frame).resizable(true).default_size(330.0);
-        panel.max_size(0.5 * ui.available_width()).show(ui, |ui| {
+        let half = 0.5 * ui.available_width();
+        let panel = panel_at(sheet, || {
+            Panel::right("check panel").resizable(true).default_size(330.0).max_size(half)
+        });
+        panel.frame(frame).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.label(RichText::new("Check the floor").size(17.0).strong().color(color(theme.ink)));
             });

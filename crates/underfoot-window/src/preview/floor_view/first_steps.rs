@@ -4,6 +4,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Rect, Sense, Ui, WidgetInfo};
 use glam::Vec2;
 
+use crate::preview::handheld::is_for_fingers;
 use crate::preview::icons::Icon;
 use crate::preview::labels::{Labels, StepCard};
 use crate::preview::messages::Happened;
@@ -18,6 +19,9 @@ use underfoot_scene::scene::Theme;
 
 /// Time for which the cards stay after the last step, in seconds: long enough to see its tick.
 const STAY_S: f64 = 2.0;
+
+/// Distance of cards from the edges of a window for fingers, in points.
+const EDGE: f32 = 4.0;
 
 /// Distance from the standing foot within which a contact counts as that foot, in metres: half a sole.
 const FOOT_M: f32 = 0.15;
@@ -38,6 +42,14 @@ impl FirstStep {
             Self::Press => "Press here",
             Self::Drag => "Drag this",
             Self::Stand => "Stand here with the other foot: Space",
+        }
+    }
+
+    /// The same in a window for fingers, which has no keys.
+    const fn text_for_fingers(self) -> &'static str {
+        match self {
+            Self::Press | Self::Drag => self.text(),
+            Self::Stand => "Stand here with the other foot",
         }
     }
 
@@ -130,7 +142,9 @@ impl FirstSteps {
         let (layout, page, floor) = (shown.layout(), shown.snapshot().page, shown.floor.geometry.bounds());
         let controls = layout.widgets.iter().filter(|widget| widget.is_on(page));
         let taken = controls.map(|widget| map.rect(widget.area)).chain(written);
-        let mut labels = Labels::within(rect, taken);
+        let for_fingers = is_for_fingers(ui);
+        // At the edges of a small screen, cards keep clear of them.
+        let mut labels = Labels::within(if for_fingers { rect.shrink(EDGE) } else { rect }, taken);
         let painter = ui.painter_at(rect);
         // The first step that is not done is the one to take now.
         let next = self.done.iter().position(|done| !done);
@@ -143,11 +157,12 @@ impl FirstSteps {
                 (false, false) => theme.quiet,
             };
             let mark = if is_done { Icon::Check.unicode().to_string() } else { (index + 1).to_string() };
-            let card = StepCard { mark: &mark, text: step.text(), colour };
+            let text = if for_fingers { step.text_for_fingers() } else { step.text() };
+            let card = StepCard { mark: &mark, text, colour };
             let place = labels.card(&painter, map.rect(target), &card, theme);
             let node = ui.interact(place, ui.scope_id().with(("first step", index)), Sense::hover());
             let state = if is_done { ", done" } else { "" };
-            let spoken = format!("Step {}: {}{state}", index + 1, step.text());
+            let spoken = format!("Step {}: {text}{state}", index + 1);
             node.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
         }
     }

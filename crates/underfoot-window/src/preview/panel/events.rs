@@ -3,8 +3,9 @@
 use std::collections::VecDeque;
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
+use eframe::egui::{Align2, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 
+use super::super::handheld::is_for_fingers;
 use super::super::messages::{Happened, WindowMessages};
 use super::super::near_misses::NearMiss;
 use super::super::style::{TextRow, quiet, section};
@@ -65,8 +66,10 @@ pub(super) fn events_part(
 /// A search field for the list, and a button that copies the listed events.
 fn search_events(ui: &mut Ui, messages: &WindowMessages, search: &mut String) {
     ui.horizontal(|ui| {
-        let room = (ui.available_width() - 70.0).max(60.0);
+        let copy = if is_for_fingers(ui) { 96.0 } else { 70.0 };
+        let room = (ui.available_width() - copy).max(60.0);
         let field = TextEdit::singleline(search).hint_text("Search").desired_width(room);
+        let field = field.align(Align2::LEFT_CENTER);
         let field = ui.add(field);
         field.widget_info(|| WidgetInfo::labeled(Role::SearchInput, true, "Search events"));
         let copy = ui.button("Copy").on_hover_text("The listed events as JSON lines, oldest first");

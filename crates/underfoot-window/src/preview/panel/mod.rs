@@ -20,6 +20,7 @@ pub(in crate::preview) use tuner::Tuner;
 use eframe::egui::{Margin, Panel, ScrollArea, Ui};
 
 use super::app::App;
+use super::handheld::{PanelSheet, panel_at};
 use super::icons::Icon;
 use super::stage::BESIDE;
 use super::style::{panel_frame, switch_button};
@@ -31,7 +32,9 @@ const EVENTS: f32 = 190.0;
 #[derive(Default)]
 pub(super) struct SidePanel {
     /// Whether the user has opened or closed it; `None` while the window's width decides.
-    wanted: Option<bool>,
+    pub(super) wanted: Option<bool>,
+    /// Whether it stays closed unless the user opens it, as in a window in a hand.
+    pub(super) is_folded: bool,
     /// The text that lines of the list of events must contain; empty for all.
     search: String,
     /// Height of its parts other than the list of events at the last frame, in points.
@@ -42,7 +45,7 @@ impl SidePanel {
     /// Whether a window of this width, in points, shows the panel at the right: in Try, a window too narrow for panel
     /// and floor shows it only on request.
     pub(super) fn is_shown(&self, width: f32, designs: bool) -> bool {
-        self.wanted.unwrap_or(designs || width >= BESIDE)
+        self.wanted.unwrap_or(!self.is_folded && (designs || width >= BESIDE))
     }
 
     /// A button that opens or closes the panel at the right; a compact one has an icon alone.
@@ -61,18 +64,25 @@ impl SidePanel {
 
 impl App {
     /// Shows the side panel, unless it is closed.
-    pub(super) fn show_side_panel(&mut self, ui: &mut Ui) {
+    pub(super) fn show_side_panel(&mut self, ui: &mut Ui, sheet: Option<PanelSheet>) {
         if !self.panel.is_shown(ui.ctx().content_rect().width(), false) {
             return;
         }
         let theme = self.appearance.theme();
         let frame = panel_frame(&theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
-        let panel = Panel::right("side panel").frame(frame).resizable(true);
         let half = 0.5 * ui.available_width();
-        panel.default_size(304.0).size_range(264.0_f32.min(half)..=440.0_f32.min(half)).show(ui, |ui| {
+        let panel = panel_at(sheet, || {
+            let panel = Panel::right("side panel").resizable(true).default_size(304.0);
+            panel.size_range(264.0_f32.min(half)..=440.0_f32.min(half))
+        });
+        panel.frame(frame).show(ui, |ui| {
             let height = ui.available_height().max(0.0);
             // The list gets the height that the other parts left free in the last frame, and stays in view.
-            let events = (height - self.panel.other_parts).clamp(EVENTS.min(0.5 * height), 0.6 * height);
+            let events = match sheet {
+                // A low panel scrolls as a whole.
+                Some(_) => 0.0,
+                None => (height - self.panel.other_parts).clamp(EVENTS.min(0.5 * height), 0.6 * height),
+            };
             let area = ScrollArea::vertical().max_height(height - events);
             area.auto_shrink(false).show(ui, |ui| {
                 // The scroll bar needs space beside the figures.
@@ -91,7 +101,13 @@ impl App {
                     self.show_floor_parts(ui);
                 }
                 self.panel.other_parts = ui.cursor().top() - top;
+                if sheet.is_some() {
+                    events::events_part(ui, &theme, &self.shown.messages, &mut self.panel.search, EVENTS);
+                }
             });
+            if sheet.is_some() {
+                return;
+            }
             let left = ui.available_height();
             ui.set_width(ui.available_width() - 8.0);
             events::events_part(ui, &theme, &self.shown.messages, &mut self.panel.search, left);

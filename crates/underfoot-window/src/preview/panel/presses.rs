@@ -7,6 +7,7 @@ use eframe::egui::{
 };
 
 use super::super::design::{Designer, Threshold, set_threshold, undo_design};
+use super::super::handheld::is_for_fingers;
 use super::super::plots::Plots;
 use super::super::presses::{ControlPress, PressLog};
 use super::super::selection::Selection;
@@ -68,7 +69,9 @@ pub(super) fn presses_part(
     let has_presses = presses.of(&id).next().is_some();
     section(ui, theme, &format!("Control {title}"), |ui| {
         is_plotted = plot_button(ui, id.as_str());
-        let forget = ui.add_enabled(has_presses, Button::new("Forget").small());
+        let forget = Button::new("Forget");
+        let forget = if is_for_fingers(ui) { forget } else { forget.small() };
+        let forget = ui.add_enabled(has_presses, forget);
         forget.widget_info(|| WidgetInfo::labeled(Role::Button, has_presses, "Forget presses"));
         if forget.on_hover_text("Forget the presses of this control").clicked() {
             wish = Some(Wish::Forget);

@@ -5,10 +5,11 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::super::feed::PreviewCommand;
+use super::super::handheld::is_for_fingers;
 use super::super::plots::{Plots, Series};
 use super::super::selection::Selection;
 use super::super::shown::ShownFloor;
-use super::super::style::{panel_colour, plot_button, quiet, section};
+use super::super::style::{panel_colour, plot_button, quiet, section, small_button};
 use underfoot::engine::TileState;
 use underfoot::floor::{Corner, Floor, Geometry, TileId};
 use underfoot::layout::Colour;
@@ -34,13 +35,14 @@ pub(super) fn tile_part(
     let (mut unpin, mut mute, mut plot) = (false, false, false);
     section(ui, theme, &format!("Tile {}, {}", tile.column, tile.row), |ui| {
         if pinned {
-            unpin = ui.small_button("Follow the foot").clicked();
+            unpin = small_button(ui, "Follow the foot").clicked();
         } else {
             let label = ui.label(quiet(theme, "underfoot").size(12.0));
             label.on_hover_text("The tile under the foot that presses most; Shift-click pins another");
         }
         if is_moved {
-            let button = egui::Button::selectable(muted, "Mute tile").small().frame_when_inactive(true);
+            let button = egui::Button::selectable(muted, "Mute tile").frame_when_inactive(true);
+            let button = if is_for_fingers(ui) { button } else { button.small() };
             let hint = "Let this tile's actuator not be felt";
             mute = ui.add(button).on_hover_text(hint).clicked();
         }

@@ -9,6 +9,7 @@ use eframe::egui::{
 };
 
 use super::super::feed::PreviewCommand;
+use super::super::handheld::panel_at;
 use super::super::shown::ShownFloor;
 use super::super::stage::StageOfWindow;
 use super::super::style::{is_entered, panel_frame, quiet, section};
@@ -280,19 +281,19 @@ impl Tuner {
         }
         let now_s = shown.now_s;
         let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
-        let panel = if stage.is_wide() { Panel::left("tuner") } else { Panel::right("tuner") };
-        let panel = panel.frame(frame).resizable(true);
+        let panel = panel_at(stage.sheet(), || {
+            let panel = if stage.is_wide() { Panel::left("tuner") } else { Panel::right("tuner") };
+            let widest = stage.widest();
+            let panel = panel.resizable(true).default_size(332.0);
+            panel.size_range(290.0_f32.min(widest)..=520.0_f32.min(widest))
+        });
         let index = shown.floor.geometry.index(tile).unwrap_or(0);
         let actuator = shown.floor.actuators.get(index).copied().flatten();
         let place = Place {
             name: format!("{}, {}", tile.column, tile.row),
             full_scale: actuator.map_or(f32::INFINITY, |actuator| actuator.full_scale.0),
         };
-        let wishes = panel
-            .default_size(332.0)
-            .size_range(290.0_f32.min(stage.widest())..=520.0_f32.min(stage.widest()))
-            .show(ui, |ui| self.show(ui, theme, now_s, &place))
-            .inner;
+        let wishes = panel.frame(frame).show(ui, |ui| self.show(ui, theme, now_s, &place)).inner;
         if let Some(index) = wishes.choose {
             self.choose(index);
         }

@@ -11,9 +11,10 @@ use super::chart::{Chart, PlotLine, ThresholdDrag, ThresholdPair};
 use super::series::{Series, Unit};
 use super::{MOST, Plots, SPANS};
 use crate::preview::design::{Designer, Threshold, set_threshold};
+use crate::preview::handheld::{PanelSheet, is_for_fingers, panel_at};
 use crate::preview::selection::Selection;
 use crate::preview::shown::ShownFloor;
-use crate::preview::style::{panel_frame, quiet, toggle};
+use crate::preview::style::{panel_frame, quiet, small_button, toggle};
 use underfoot::units::Newtons;
 use underfoot::widget::WidgetId;
 use underfoot_scene::egui_painter::color;
@@ -37,6 +38,7 @@ impl Plots {
         shown: &ShownFloor,
         selection: &Selection,
         designer: Option<&mut Designer>,
+        sheet: Option<PanelSheet>,
     ) {
         if !self.is_open {
             return;
@@ -44,8 +46,10 @@ impl Plots {
         let selected = selection.control_of(shown.layout()).map(|widget| widget.id.clone());
         let frame = panel_frame(theme, Margin { left: 14, right: 14, top: 6, bottom: 6 });
         let most = (0.6 * ui.available_height()).max(121.0);
-        let panel = Panel::bottom("plots").frame(frame).resizable(true);
-        panel.default_size(210.0).size_range(120.0..=most).show(ui, |ui| {
+        let panel = panel_at(sheet, || {
+            Panel::bottom("plots").resizable(true).default_size(210.0).size_range(120.0..=most)
+        });
+        panel.frame(frame).show(ui, |ui| {
             self.strip(ui, theme, shown, selected.as_ref());
             self.charts(ui, theme, shown, selected, designer);
         });
@@ -66,7 +70,7 @@ impl Plots {
             ui.set_min_height(24.0);
             wish = self.everything(ui, theme, shown, selected);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let close = ui.small_button("x");
+                let close = small_button(ui, "x");
                 close.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Close plots"));
                 if close.on_hover_text("Close the plots; P does the same").clicked() {
                     wish = Some(Wish::Close);
@@ -81,24 +85,37 @@ impl Plots {
                     }
                 });
                 menu.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Seconds plotted"));
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    // Text that does not fit is cut off, so that buttons keep their places.
-                    for (series, colour) in self.chosen.iter().zip(colours(theme)) {
-                        if chip(ui, theme, &series.name(selected), colour) {
-                            wish = Some(Wish::Turn(series.clone()));
-                        }
-                    }
-                    if let Some(told) = &self.told {
-                        ui.add(Label::new(quiet(theme, told)).truncate());
-                    }
-                });
+                if !is_for_fingers(ui) {
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        // Text that does not fit is cut off, so that buttons keep their places.
+                        wish = self.chips(ui, theme, selected).or(wish.take());
+                    });
+                }
             });
         });
+        if is_for_fingers(ui) {
+            // A small window has no room for them beside the buttons.
+            ui.horizontal_wrapped(|ui| wish = self.chips(ui, theme, selected).or(wish.take()));
+        }
         match wish {
             Some(Wish::Turn(series)) => self.turn(series),
             Some(Wish::Close) => self.is_open = false,
             None => {}
         }
+    }
+
+    /// The chosen lines, each of which a click removes.
+    fn chips(&self, ui: &mut Ui, theme: &Theme, selected: Option<&WidgetId>) -> Option<Wish> {
+        let mut wish = None;
+        for (series, colour) in self.chosen.iter().zip(colours(theme)) {
+            if chip(ui, theme, &series.name(selected), colour) {
+                wish = Some(Wish::Turn(series.clone()));
+            }
+        }
+        if let Some(told) = &self.told {
+            ui.add(Label::new(quiet(theme, told)).truncate());
+        }
+        wish
     }
 
     /// A menu of everything that can be plotted, with a search field; it stays open after a choice.

@@ -6,6 +6,7 @@ mod feet;
 mod first_steps;
 mod floor_check;
 mod gallery;
+mod handheld;
 mod modes;
 mod panel;
 mod plots;

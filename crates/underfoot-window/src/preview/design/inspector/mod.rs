@@ -26,7 +26,8 @@ use super::several::shared_place;
 use super::{Pane, Panes};
 use crate::edit::{Address, Edit, FieldSection, RecordList};
 use crate::preview::PreviewCommand;
-use crate::preview::stage::INSPECTOR_PX;
+use crate::preview::handheld::panel_at;
+use crate::preview::stage::{INSPECTOR_PX, StageOfWindow};
 use crate::preview::style::{panel_frame, quiet, section};
 use effect::Waveforms;
 use field::{FieldEdits, TypedTexts};
@@ -81,7 +82,7 @@ struct RefusedEdit {
 type FrameEdits = Option<(String, FieldEdits)>;
 
 impl Inspector {
-    /// Shows the inspector, at most `widest` points wide.
+    /// Shows the inspector beside the floor on `stage`.
     pub(super) fn panel(
         &mut self,
         ui: &mut Ui,
@@ -89,12 +90,14 @@ impl Inspector {
         palette: &mut Palette,
         edited: &mut EditedLayout,
         panes: &mut Panes,
-        widest: f32,
+        stage: &StageOfWindow,
     ) {
         let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         // A fixed width, whatever the content: the floor beside the panel must not move under the pointer.
-        let panel = Panel::right("inspector").frame(frame).resizable(false);
-        panel.exact_size(INSPECTOR_PX.min(widest)).show(ui, |ui| {
+        let panel = panel_at(stage.sheet(), || {
+            Panel::right("inspector").resizable(false).exact_size(INSPECTOR_PX.min(stage.widest()))
+        });
+        panel.frame(frame).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_width(ui.available_width() - 8.0);
                 // The cached fields belong to a revision, and so must the records of which they are made.

@@ -1,7 +1,7 @@
 //! Fields that are typed.
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Key, TextEdit, Ui, WidgetInfo};
+use eframe::egui::{Align2, Key, TextEdit, Ui, WidgetInfo};
 
 use super::field::{FieldAnswer, ShownField, TypedTexts};
 use super::words::label;
@@ -23,7 +23,8 @@ pub(super) fn typed(
     let shown = if is_text { property.value.trim_matches('"') } else { &property.value };
     let (shown, hint) = if is_default { ("", shown) } else { (shown, "") };
     let text = texts.entry(property.name.clone()).or_insert_with(|| shown.to_owned());
-    let edit = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(width));
+    let edit =
+        ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(width).align(Align2::LEFT_CENTER));
     let name = label(&property.name);
     edit.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &name));
     replace_by_typing(ui, &edit, text);

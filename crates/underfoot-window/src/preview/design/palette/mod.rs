@@ -16,6 +16,7 @@ use super::edited::EditedLayout;
 use super::list::list;
 use super::list_keys::go_on;
 use super::{Pane, Panes};
+use crate::preview::handheld::{TARGET, is_for_fingers, panel_at};
 use crate::preview::style::{panel_frame, quiet, replace_by_typing, section, write_within};
 use in_hand::PutOrder;
 use thing::PaletteSection;
@@ -28,6 +29,9 @@ pub(super) use thing::PaletteThing;
 
 /// Size of a picture in the palette, in points.
 const PICTURE: egui::Vec2 = vec2(50.0, 30.0);
+
+/// Height below which the list of things stands alone in the panel, in points.
+const LOWEST: f32 = 280.0;
 
 /// Maximum number of recently used things on display.
 const RECENT: usize = 3;
@@ -71,22 +75,25 @@ impl ThingList {
         panes: &mut Panes,
     ) {
         let frame = panel_frame(theme, Margin { left: 12, right: 4, top: 0, bottom: 6 });
-        // In a narrow window all panels have one place.
-        let panel = if panes.is_narrow { Panel::right("palette") } else { Panel::left("palette") };
-        let panel = panel.frame(frame).resizable(true);
-        panel.default_size(204.0).size_range(150.0..=300.0).show(ui, |ui| {
+        let panel = panel_at(panes.sheet, || {
+            // In a narrow window all panels have one place.
+            let panel = if panes.is_narrow { Panel::right("palette") } else { Panel::left("palette") };
+            panel.resizable(true).default_size(204.0).size_range(150.0..=300.0)
+        });
+        panel.frame(frame).show(ui, |ui| {
             let half = 0.5 * ui.available_height();
             let below = Panel::bottom("on the floor").frame(egui::Frame::new()).resizable(true);
-            below.default_size(0.36 * ui.available_height()).size_range(90.0..=half.max(91.0)).show(
-                ui,
-                |ui| {
+            let below = below.default_size(0.36 * ui.available_height()).size_range(90.0..=half.max(91.0));
+            // A low panel has room for one list.
+            if ui.available_height() >= LOWEST {
+                below.show(ui, |ui| {
                     section(ui, theme, "On the floor", |_| {});
                     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                         ui.set_width(ui.available_width() - 8.0);
                         list(ui, theme, edited, &mut canvas.in_place, panes);
                     });
-                },
-            );
+                });
+            }
             ui.add_space(8.0);
             let is_led = panes.leads_to(Pane::Things);
             let search = self.search(ui, is_led);
@@ -125,6 +132,7 @@ impl ThingList {
     fn search(&mut self, ui: &mut Ui, is_led: bool) -> Response {
         let width = ui.available_width() - 12.0;
         let field = TextEdit::singleline(&mut self.words).hint_text("Search").desired_width(width);
+        let field = field.align(egui::Align2::LEFT_CENTER);
         let field = ui.add(field);
         field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Search things"));
         if is_led {
@@ -258,7 +266,8 @@ fn show_row(
     is_chosen: bool,
     again: usize,
 ) -> Response {
-    let size = vec2(ui.available_width(), PICTURE.y + 6.0);
+    let height = if is_for_fingers(ui) { TARGET } else { PICTURE.y + 6.0 };
+    let size = vec2(ui.available_width(), height);
     let (_, rect) = ui.allocate_space(size);
     // A row keeps the keyboard when rows appear or disappear above.
     let id = Id::unique(("palette", row.hand.thing.name(), row.is_recent, again));
@@ -275,7 +284,7 @@ fn show_row(
         if is_chosen {
             ui.painter().rect_filled(rect, 6, color(theme.accent).gamma_multiply(0.2));
         }
-        let picture = egui::Rect::from_min_size(rect.min + vec2(5.0, 3.0), PICTURE);
+        let picture = egui::Rect::from_min_size(rect.min + vec2(5.0, 0.5 * (height - PICTURE.y)), PICTURE);
         draw_thing(ui, theme, palette, &edited.document, &row.hand.thing, picture);
         let at = egui::pos2(picture.right() + 7.0, rect.center().y);
         let font = egui::FontId::proportional(12.5);

@@ -1,5 +1,6 @@
 //! Design mode without a display: finds parts by name, uses mouse and keyboard, and checks the resulting text.
 
+mod arrivals;
 mod badges;
 mod clipboard;
 mod files;

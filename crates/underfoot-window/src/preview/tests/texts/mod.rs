@@ -241,6 +241,46 @@ fn look_at(theme: Theme) {
     assert!(found.is_empty(), "{} faults:\n{}", found.len(), found.join("\n"));
 }
 
+/// Screens of a phone in a hand, in points.
+const PHONES: [(f32, f32); 2] = [(390.0, 844.0), (844.0, 390.0)];
+
+#[test]
+fn texts_on_a_phone_are_whole_readable_and_clear_of_each_other() {
+    let mut found = Vec::new();
+    for size in PHONES {
+        for layout in ["map", "surgical"] {
+            let mut gallery = Gallery::of(layout, builtin_layout(layout).unwrap(), Theme::LIGHT, size);
+            gallery.look("Try");
+            gallery.step();
+            gallery.look("Try with feet");
+            for menu in ["Layers", "Appearance", "Help"] {
+                gallery.click(menu);
+                gallery.look_under(&format!("Try, {menu}"), true);
+                gallery.key(Modifiers::NONE, Key::Escape);
+            }
+            for panel in ["Panel", "Effects", "Plots"] {
+                gallery.click(panel);
+                gallery.look_under(&format!("Try, {panel}"), true);
+            }
+            gallery.key(Modifiers::NONE, Key::F2);
+            gallery.look_under("Design", true);
+            for panel in ["Add", "Panel", "Text"] {
+                gallery.click(panel);
+                gallery.look_under(&format!("Design, {panel}"), true);
+            }
+            for menu in ["File", "Show"] {
+                gallery.click(menu);
+                gallery.look_under(&format!("Design, {menu}"), true);
+                gallery.key(Modifiers::NONE, Key::Escape);
+            }
+            found.append(&mut gallery.found);
+        }
+    }
+    // Lists scroll in the panels, which are as wide as the window; a long title ends with dots.
+    found.retain(|fault| !fault.contains("is cut above or below") && !fault.contains("is shortened"));
+    assert!(found.is_empty(), "{} faults:\n{}", found.len(), found.join("\n"));
+}
+
 /// Controls with every sort of message, in the half of the floor that a narrow window shows beside its panel.
 const MESSAGES: &str = r#"Layout(
     version: 4,
