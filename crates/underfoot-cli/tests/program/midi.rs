@@ -124,10 +124,13 @@ impl Observer for JackStage {
 
 impl Drop for JackStage {
     fn drop(&mut self) {
-        for child in self.listener.iter_mut().chain([&mut self.server]) {
-            let _ = child.kill();
-            let _ = child.wait();
+        if let Some(listener) = &mut self.listener {
+            let _ = listener.kill();
+            let _ = listener.wait();
         }
+        // A server that is killed keeps one of the eight places that JACK has for the servers of a user.
+        kill(self.server.id(), "TERM");
+        let _ = self.server.wait();
     }
 }
 
