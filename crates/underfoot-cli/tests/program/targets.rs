@@ -178,6 +178,22 @@ pub fn held_for(site: &Site, observer: &mut impl Observer, end: fn(&Run, &Boards
     took
 }
 
+/// Holds the pedal until the server panics, and returns the time from its end until the observer sees it up.
+fn held_after_a_panic(site: &Site, observer: &mut impl Observer) -> Duration {
+    let client = Client::new();
+    // The foot stands since the second second.
+    let mut run = site.run(&client, &["--fault", "panic=4s"]);
+    let boards = Boards::start(site, run.address);
+    until("the key goes down", || observer.is_down());
+    until("the panic ends the program", || {
+        observer.is_down();
+        run.child.try_wait().unwrap().is_some()
+    });
+    let took = until("it comes up", || !observer.is_down());
+    drop(boards);
+    took
+}
+
 pub fn comes_up_soon(site: &Site, observer: &mut impl Observer) {
     for (name, end) in ENDS {
         let mut times: Vec<Duration> = Vec::new();
@@ -189,6 +205,8 @@ pub fn comes_up_soon(site: &Site, observer: &mut impl Observer) {
         }
         println!("{name}: up after {times:?}");
     }
+    let after_a_panic = held_after_a_panic(site, observer);
+    assert!(after_a_panic <= SOON, "server panics: {after_a_panic:?}");
 }
 
 #[test]
@@ -229,8 +247,13 @@ fn twenty_rounds_of_each_end_of_a_key() {
 /// Plays twenty rounds of each end and prints the median and the longest time.
 pub fn twenty_rounds(site: &Site, observer: &mut impl Observer) {
     let mut late = Vec::new();
-    for (name, end) in ENDS {
-        let mut times: Vec<Duration> = (0..20).map(|_| held_for(site, observer, end)).collect();
+    let ends = ENDS.map(|(name, end)| (name, Some(end))).into_iter().chain([("server panics", None)]);
+    for (name, end) in ends {
+        let mut round = || match end {
+            Some(end) => held_for(site, observer, end),
+            None => held_after_a_panic(site, observer),
+        };
+        let mut times: Vec<Duration> = (0..20).map(|_| round()).collect();
         times.sort();
         println!("{name}: median {:?}, longest {:?}", times[10], times[19]);
         late.extend((times[19] > SOON).then(|| format!("{name}: {times:?}")));
