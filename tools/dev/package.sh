@@ -149,6 +149,8 @@ package_deb() {
     rm -rf "$made"
     mkdir -p "$made"
     "$release/underfoot" man --out "$made/man"
+    # Debian's rules want them so; cargo-deb leaves them as they are.
+    gzip -9n "$made"/man/*.1
     "$release/underfoot" completions bash >"$made/underfoot.bash"
     "$release/underfoot" completions fish >"$made/underfoot.fish"
     "$release/underfoot" completions zsh >"$made/_underfoot"
