@@ -121,14 +121,15 @@ def main():
 
 
 def report(due, keys):
-    """Prints how late the keys are; returns whether there are fewer or more than presses."""
-    if len(keys) != len(due):
-        print(f"{len(due)} presses, {len(keys)} keys")
+    """Prints how late the keys are, each after the last press before it; returns whether a press has none."""
+    late = sorted(1000 * (key - max(press for press in due if press <= key)) for key in keys if key >= due[0])
+    if not late:
+        print("no key came")
         return 1
-    late = sorted(1000 * (key - press) for press, key in zip(due, keys))
     at = [late[min(len(late) - 1, int(share * len(late)))] for share in (0.5, 0.95, 0.99)]
-    print(f"{len(late)} presses: median {at[0]:.1f} ms, 95 % {at[1]:.1f} ms, 99 % {at[2]:.1f} ms, longest {late[-1]:.1f} ms")
-    return 0
+    print(f"{len(due)} presses, {len(late)} keys: median {at[0]:.1f} ms, 95 % {at[1]:.1f} ms, 99 % {at[2]:.1f} ms, "
+          f"longest {late[-1]:.1f} ms")
+    return int(len(late) != len(due))
 
 
 if __name__ == "__main__":
