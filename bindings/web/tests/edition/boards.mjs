@@ -40,6 +40,8 @@ function padded(text) {
 
 function sendForEver([host, port]) {
   const socket = dgram.createSocket("udp4");
+  // A floor that is killed leaves its port closed, and the boards go on.
+  socket.on("error", (error) => { if (error.code !== "ECONNREFUSED") throw error; });
   const heads = Array.from({ length: BOARDS }, (_, board) =>
     Buffer.concat([padded(`/underfoot/board/${board}`), padded(`,i${"f".repeat(SENSORS)}`)]));
   let [sequence, foot, isNew] = [0, { tile: 0, force: 0 }, false];
