@@ -21,6 +21,7 @@ import time
 TOOLS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 sys.path.insert(0, TOOLS)
 from display import Display, end  # noqa: E402
+from floor import free_port  # noqa: E402
 
 # Counts of a 16-bit converter: an empty sensor, a foot's load on it, and the noise.
 EMPTY, LOAD, NOISE = 7680, 35840, 26
@@ -103,10 +104,7 @@ def main():
         for file, text in (("floor.ron", "Floor(columns: 1, rows: 1)\n"), ("layout.ron", LAYOUT.format(display=name))):
             with open(os.path.join(folder, file), "w") as out:
                 out.write(text)
-        probe = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-        probe.close()
+        port = free_port()
         command = [os.path.abspath(options.program), "run", "layout.ron", "--floor", "floor.ron", "--listen",
                    f"127.0.0.1:{port}", "--no-osc", "--wav", "sound.wav"]
         program = subprocess.Popen(command, cwd=folder, env=screen.env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -112,7 +112,7 @@ impl Outlets {
         }
     }
 
-    /// Opens again what was gone, and connects what has opened or appeared meanwhile.
+    /// Opens targets again that were gone, and connects ports that have opened or appeared meanwhile.
     pub(super) fn settle(&mut self) {
         let waiting = self.doors.iter_mut().filter(|door| match door.open {
             Some(_) => !door.missing.is_empty(),

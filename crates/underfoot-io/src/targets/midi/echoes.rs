@@ -1,7 +1,7 @@
 //! Releases that are sent again in the cycles that follow.
 //!
-//! When a client of JACK dies, the server runs no receiver that it was connected to until it has noticed: what others
-//! send to this receiver in the meantime is lost. A guardian releases just then.
+//! When a client of JACK dies, the server runs no receiver that it was connected to until it has noticed: messages
+//! of others to this receiver are lost in the meantime. A guardian releases just then.
 
 /// Maximum number of releases that are repeated; of more, the oldest are sent only once.
 const MOST: usize = 128;
@@ -36,7 +36,7 @@ impl Echoes {
         self.next = (self.next + 1) % MOST;
     }
 
-    /// Ends the repetitions on the channel of a message that follows: what it presses stays down.
+    /// Ends the repetitions on the channel of a message that follows: a note that it presses stays down.
     pub(super) fn cancel(&mut self, status: u8) {
         for echo in self.entries.iter_mut().filter(|echo| echo.bytes[0] & 0x0f == status & 0x0f) {
             echo.left = 0;

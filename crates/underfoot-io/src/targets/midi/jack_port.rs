@@ -7,6 +7,7 @@
 //! A port connects to its receivers with its first message, or once somebody asks for them. One that stands by does not:
 //! its receivers would wait for it in each cycle, for ever if its process stands still.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
@@ -53,7 +54,7 @@ pub(super) struct JackPort {
     /// Part of the name of a port that it connects to.
     into: Option<String>,
     /// The full names of ports to which it connects later; `None` once it has.
-    standing_by: Option<Vec<String>>,
+    standing_by: Option<BTreeSet<String>>,
     queue: RingBufferWriter,
     shared: Arc<PortStatus>,
     sent: u64,
@@ -145,15 +146,17 @@ impl JackPort {
         let process = MidiProcess { port, queue, echoes, shared: Arc::clone(&shared) };
         let client = client.activate_async(ServerWatch(Arc::clone(&shared)), process).map_err(gone)?;
         let into = target.into.clone();
-        let (client, standing_by) = (Some(client), Some(Vec::new()));
+        let (client, standing_by) = (Some(client), Some(BTreeSet::new()));
         Ok(Self { client, name, port: kept, into, standing_by, queue: waiting, shared, sent: 0 })
     }
 
-    /// Makes all connections for which it waited.
+    /// Makes all connections for which it waited, each once: the server takes a cycle or more for one.
     fn take_part(&mut self) {
-        if let Some(wanted) = self.standing_by.take() {
+        if self.standing_by.is_some() {
             self.connect_into();
-            self.connect(&wanted);
+        }
+        if let Some(wanted) = self.standing_by.take() {
+            self.connect(&Vec::from_iter(wanted));
         }
     }
 
@@ -207,7 +210,8 @@ impl JackPort {
         let (there, missing): (Vec<_>, Vec<_>) =
             receivers.iter().cloned().partition(|name| client.port_by_name(name).is_some());
         match &mut self.standing_by {
-            Some(wanted) => *wanted = there,
+            // Others appeared earlier, or appear later.
+            Some(wanted) => wanted.extend(there),
             None => {
                 for receiver in there {
                     // It may be connected already.

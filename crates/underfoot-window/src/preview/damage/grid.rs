@@ -50,7 +50,7 @@ impl Grid {
     /// Column and row of the cell at this place; those of the rim stand for all places outside.
     fn cell(&self, at: Pos2) -> (usize, usize) {
         let at = (at - self.screen.min) / self.side;
-        // The cast makes zero of what is negative.
+        // The cast turns negative numbers into zero.
         ((at.x as usize).min(self.columns - 1), (at.y as usize).min(self.cells.len() / self.columns - 1))
     }
 

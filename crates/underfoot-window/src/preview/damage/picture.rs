@@ -96,7 +96,7 @@ impl Picture {
     }
 }
 
-/// The points that a shape may touch: none for text without letters, whose bounds are unknown.
+/// The points that a shape may touch: none for text without letters, since its bounds are unknown.
 fn reach(shape: &ClippedShape) -> Rect {
     let bounds = shape.shape.visual_bounding_rect();
     if matches!(&shape.shape, Shape::Text(text) if text.galley.mesh_bounds.is_negative()) {

@@ -1,5 +1,5 @@
-//! Files that the user drops on the window or chooses: what can be read is kept and opened, all else is refused with its
-//! problems, and the files before it stay.
+//! Files that the user drops on the window or chooses: readable ones are kept and opened, the others are refused with
+//! their problems, and the files before them stay.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
