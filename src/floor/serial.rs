@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use super::CountSign;
+use super::{CountSign, Floor};
 
 use underfoot_format::Named;
 use underfoot_format::codec::Spelled;
@@ -83,6 +83,14 @@ impl SerialWire {
     #[must_use]
     pub const fn slip(name: PortName) -> Self {
         Self { port: Some(name), baud: Self::BAUD, lines: None }
+    }
+}
+
+impl Floor {
+    /// Whether a board sends a line of text only when it is asked for one; false for a board that the floor lacks.
+    pub(crate) fn asks(&self, board: usize) -> bool {
+        let mut lines = self.serial.iter().filter_map(|wire| wire.lines.as_ref());
+        lines.any(|lines| usize::from(lines.board) == board && !lines.request.is_empty())
     }
 }
 

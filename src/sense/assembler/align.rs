@@ -3,6 +3,7 @@
 use super::board::BoardTrack;
 use super::clock::{SLOT_NS, SlotClock};
 use super::numbering::TimeBase;
+use super::timed::TimedStream;
 use crate::wire::LinkCounters;
 
 /// Interval at which the boards' slots and the clock are compared with the receive clock.
@@ -65,7 +66,7 @@ impl Alignment {
                 // It is no reference for the others.
                 self.has_new_rates |= board.adopt_own_rate();
             } else if let Some(pace) = board.stream.other_pace() {
-                board.set_own_rate(TimeBase::Packets, pace, counters);
+                board.set_own_rate(TimedStream::new(TimeBase::Packets, pace), counters);
                 self.has_new_rates = true;
             } else if let Some(delay) = board.stream.least_delay(now_ns) {
                 self.delays.push((delay, number));

@@ -9,6 +9,7 @@ use super::pace::PacketPace;
 use super::sample::BoardSample;
 use super::stream::BoardStream;
 use super::tare::{Tare, TareMeter, TareOutcome, TareResult};
+use super::timed::TimedStream;
 use super::window::{NARROW, SensorWindow, WIDE, count_misses_wide, misses_wide, windows};
 use super::write::{Trust, put_narrow, put_wide};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
@@ -127,9 +128,14 @@ impl BoardTrack {
             is_swapped: false,
             tare,
         };
-        if let Some(hz) = written_hz {
+        let stream = if floor.asks(number) {
+            Some(TimedStream::asked(written_hz.map(PacketPace::of_rate).unwrap_or_default()))
+        } else {
             // Until its numbers are known, their arrival is the packets' time.
-            board.set_own_rate(TimeBase::Arrival, PacketPace::of_rate(hz), &mut LinkCounters::default());
+            written_hz.map(|hz| TimedStream::new(TimeBase::Arrival, PacketPace::of_rate(hz)))
+        };
+        if let Some(stream) = stream {
+            board.set_own_rate(stream, &mut LinkCounters::default());
         }
         board
     }

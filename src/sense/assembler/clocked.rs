@@ -4,6 +4,7 @@ use super::Assembler;
 use super::board::BoardTrack;
 use super::clock::{SLOT_NS, SlotClock};
 use super::numbering::TimeBase;
+use super::timed::TimedStream;
 use crate::sense::{HoldDoubt, TileSample};
 use crate::wire::SensorPacket;
 
@@ -69,7 +70,7 @@ impl Assembler {
         let board = &mut boards[number];
         board.stream.note_late(counters);
         if let Some(pace) = board.stream.fast_pace(times.now_ns(), clock) {
-            board.set_own_rate(TimeBase::Packets, pace, counters);
+            board.set_own_rate(TimedStream::new(TimeBase::Packets, pace), counters);
             alignment.note_new_rate();
         }
     }

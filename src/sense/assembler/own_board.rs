@@ -7,6 +7,7 @@ use super::clock::SlotClock;
 use super::numbering::{NumberVerdict, TimeBase};
 use super::own_rate::OwnRate;
 use super::pace::PacketPace;
+use super::timed::TimedStream;
 use crate::sense::health::Health;
 use crate::sense::{ForceFrame, TileSample};
 use crate::wire::{LinkCounters, Readings, SensorPacket};
@@ -38,20 +39,20 @@ impl BoardTrack {
             Some(own) => own.stream.rebase(base),
             None if base == TimeBase::Packets => false,
             None => {
-                self.set_own_rate(base, PacketPace::of_rate(hz), counters);
+                self.set_own_rate(TimedStream::new(base, PacketPace::of_rate(hz)), counters);
                 true
             }
         }
     }
 
     /// Gives a board that does not send once a millisecond a rate of its own.
-    pub(super) fn set_own_rate(&mut self, base: TimeBase, pace: PacketPace, counters: &mut LinkCounters) {
+    pub(super) fn set_own_rate(&mut self, stream: TimedStream, counters: &mut LinkCounters) {
         let mut tiles = self.tiles();
         tiles.sort_unstable();
         tiles.dedup();
         self.stream.leave_slots(counters);
         self.forget_waiting();
-        self.own_rate = Some(Box::new(OwnRate::new(base, pace, tiles)));
+        self.own_rate = Some(Box::new(OwnRate::new(stream, tiles)));
         self.follow_rate();
     }
 

@@ -1,8 +1,6 @@
 //! A board with a rate of its own: its stream, its samples on their way to frames, and the age of the one in use.
 
 use super::clock::{SLOT_NS, SlotClock};
-use super::numbering::TimeBase;
-use super::pace::PacketPace;
 use super::pending::{PendingSample, PendingSamples};
 use super::presence::{LossMeter, Presence};
 use super::sample::BoardSample;
@@ -41,9 +39,9 @@ pub(super) struct OwnRate {
 }
 
 impl OwnRate {
-    pub(super) fn new(base: TimeBase, pace: PacketPace, tiles: Vec<u32>) -> Self {
+    pub(super) fn new(stream: TimedStream, tiles: Vec<u32>) -> Self {
         Self {
-            stream: TimedStream::new(base, pace),
+            stream,
             pending: PendingSamples::default(),
             last: BoardSample::EMPTY,
             in_use: None,

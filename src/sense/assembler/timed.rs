@@ -27,10 +27,13 @@ const JITTER_PACKETS: f64 = 64.0;
 /// The packets of one board at its own rate, and the instants of its samples on the receive clock.
 ///
 /// With numbers, a sample's instant is the board's own time plus the shortest way of recent packets, and never later
-/// than its arrival: t = u + min(arrival - u). Without, it is the arrival.
+/// than its arrival: t = u + min(arrival - u). Without, it is the arrival, and so it is for a board that is asked for
+/// each packet: the number counts answers, whose intervals depend on this computer.
 #[derive(Clone, Debug)]
 pub(super) struct TimedStream {
     base: TimeBase,
+    /// Whether its board is asked for each packet.
+    is_asked: bool,
     pace: PacketPace,
     /// `None` before the first packet.
     last: Option<LastPacket>,
@@ -71,7 +74,12 @@ pub(super) struct SampleTime {
 impl TimedStream {
     /// A board of so many slots from packet to packet.
     pub(super) fn new(base: TimeBase, pace: PacketPace) -> Self {
-        Self { base, pace, last: None, position: 0, jitter_ns: 0.0, jump: None }
+        Self { base, is_asked: false, pace, last: None, position: 0, jitter_ns: 0.0, jump: None }
+    }
+
+    /// A board that is asked for each packet: its time base stays.
+    pub(super) fn asked(pace: PacketPace) -> Self {
+        Self { is_asked: true, ..Self::new(TimeBase::Arrival, pace) }
     }
 
     pub(super) const fn base(&self) -> TimeBase {
@@ -92,9 +100,9 @@ impl TimedStream {
         self.jitter_ns as i64
     }
 
-    /// Takes another time base; returns whether it is another.
+    /// Takes another time base, if its board is not asked; returns whether it does.
     pub(super) fn rebase(&mut self, base: TimeBase) -> bool {
-        let is_other = base != self.base;
+        let is_other = base != self.base && !self.is_asked;
         if is_other {
             self.base = base;
             self.restart();
@@ -128,14 +136,16 @@ impl TimedStream {
             return Some(SampleTime { sampled_ns: now_ns, restarted: false });
         };
         let now_ns = now_ns.max(last.arrived_ns);
+        let step = i64::from(number.wrapping_sub(last.number).cast_signed());
         if self.base == TimeBase::Arrival {
-            self.count(now_ns, 0, loss, counters);
+            // Answers are counted, also those that are rejected.
+            let rejected = if self.is_asked { (step - 1).max(0) } else { 0 };
+            self.count(now_ns, rejected, loss, counters);
             let off = (now_ns - last.arrived_ns - self.period_ns()).abs();
             self.note_jitter(off);
             self.last = Some(LastPacket { number, arrived_ns: now_ns, ..last });
             return Some(SampleTime { sampled_ns: now_ns, restarted: false });
         }
-        let step = i64::from(number.wrapping_sub(last.number).cast_signed());
         if step == 0 && !(self.base == TimeBase::Milliseconds && is_other) {
             counters.duplicate += 1;
             return None;

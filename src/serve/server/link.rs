@@ -116,7 +116,7 @@ impl LinkWatch {
                     TimeBase::Packets => "its samples' times come from the number of each packet".to_owned(),
                     TimeBase::Milliseconds => "its samples' times are its stamps in milliseconds".to_owned(),
                     TimeBase::Arrival => format!(
-                        "without useful numbers, its samples' times are those of their arrival, to {:.1} ms",
+                        "its samples' times are those of their arrival, to {:.1} ms",
                         1e3 * timing.jitter.as_secs_f32()
                     ),
                 };

@@ -4,7 +4,7 @@
 //! A tile is empty, carries a foot from 4 to 7 s, and is empty again; all in virtual time.
 
 use underfoot::engine::Engine;
-use underfoot::floor::{Board, Floor, Geometry};
+use underfoot::floor::{Board, Floor, Geometry, PortName, SerialWire, TextLines, TextNumbers};
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Assembler, Method, Quality, Tare, TimeBase};
@@ -31,10 +31,10 @@ fn load(seconds: f64) -> f64 {
     ((seconds - 4.0) / 0.12).min((7.0 - seconds) / 0.12).clamp(0.0, 1.0)
 }
 
-/// Four counts of 16 bits at a time.
-fn counts(seconds: f64, salt: u64) -> Readings {
+/// Four counts of 16 bits at a time, with noise of this range.
+fn counts(seconds: f64, salt: u64, noise: f64) -> Readings {
     let count = |corner: u64| {
-        let noise = 40.0 * (chance(salt * 4 + corner) - 0.5);
+        let noise = noise * (chance(salt * 4 + corner) - 0.5);
         Some((64.0 * (120.0 + 560.0 * load(seconds)) + noise) as u16)
     };
     Readings::Counts((0..4).map(count).collect())
@@ -50,11 +50,15 @@ struct Sender {
     way_s: [f64; 2],
     /// Time at which its cable is pulled, in seconds.
     until_s: f64,
+    /// Time for which the tile has been empty before, in seconds.
+    empty_s: f64,
+    /// Range of the noise, in counts.
+    noise: f64,
 }
 
 impl Sender {
     fn new(hz: u64, base: TimeBase) -> Self {
-        Self { board: 0, hz, base, way_s: [0.0003, 0.001], until_s: f64::INFINITY }
+        Self { board: 0, hz, base, way_s: [0.0003, 0.001], until_s: f64::INFINITY, empty_s: 0.0, noise: 40.0 }
     }
 
     /// Its packets up to `end_s`, by arrival.
@@ -69,7 +73,7 @@ impl Sender {
                 TimeBase::Arrival => 0,
             };
             let received = Instant::from_micros((1e6 * (seconds + way_s)) as u64 + 1000);
-            let readings = counts(seconds, n * 2 + u64::from(self.board));
+            let readings = counts(seconds - self.empty_s, n * 2 + u64::from(self.board), self.noise);
             SensorPacket { board: self.board, sequence, received, readings }
         };
         let mut packets: Vec<SensorPacket> = (0..count).map(packet).collect();
@@ -139,6 +143,11 @@ impl Bench {
         let mut packets: Vec<SensorPacket> =
             senders.iter().flat_map(|sender| sender.packets(end_s)).collect();
         packets.sort_by_key(|packet| packet.received);
+        self.run_packets(packets, end_s);
+    }
+
+    /// Runs the floor for `end_s` with these packets.
+    fn run_packets(&mut self, packets: Vec<SensorPacket>, end_s: f64) {
         let mut packets = packets.into_iter().peekable();
         for poll_us in (0..(1e6 * end_s) as u64).step_by(POLL_US as usize) {
             let poll = Instant::from_micros(poll_us);
@@ -258,6 +267,64 @@ fn jitter_of_half_a_period_presses_nothing_else() {
             assert!(bench.at(EventKind::Released).len() == 1, "{hz} Hz, {base:?}: {kinds:?}");
             assert!(bench.ill.is_empty(), "{hz} Hz, {base:?}: {:?}", bench.ill);
         }
+    }
+}
+
+#[test]
+fn a_slow_board_whose_noise_is_known_well_repeats_nothing() {
+    // After a minute no reading has ever repeated: the noise is much larger than a count.
+    for hz in [20, 25, 50, 100] {
+        let mut bench = Bench::new(&floor(1, &[None]), "button");
+        let sender = Sender { empty_s: 60.0, noise: 2000.0, ..Sender::new(hz, TimeBase::Packets) };
+        bench.run(&[sender], 68.0);
+        assert_eq!(bench.at(EventKind::Released).len(), 1, "{hz} Hz: {:?}", bench.events);
+        assert_eq!(bench.assembler.counters().repeats, 0, "{hz} Hz");
+    }
+}
+
+/// Packets of a board that is asked for each one, `pace` times a second at most, from a busy computer: the intervals
+/// change, and after each tenth of a second an answer takes 5 ms.
+fn asked(pace: u64, end_s: f64) -> Vec<SensorPacket> {
+    let mut at_us = 1000_u64;
+    let mut packets = Vec::new();
+    while (at_us as f64) < 1e6 * end_s {
+        let n = packets.len() as u64;
+        // From second to second the computer is busier or less busy.
+        let busy = 1.0 + 0.3 * chance(at_us / 1_000_000);
+        at_us += (1e6 / pace as f64 * busy) as u64 + if n % (pace / 10) == 0 { 5000 } else { 0 };
+        let readings = counts(at_us as f64 / 1e6, n, 40.0);
+        packets.push(SensorPacket {
+            board: 0,
+            sequence: n as u32,
+            received: Instant::from_micros(at_us),
+            readings,
+        });
+    }
+    packets
+}
+
+#[test]
+fn a_board_that_is_asked_holds_whatever_the_pace_of_its_answers() {
+    for pace in [50, 200, 1000] {
+        let mut floor = floor(1, &[None]);
+        floor.serial.push(SerialWire {
+            lines: Some(TextLines {
+                board: 0,
+                request: b"v".to_vec(),
+                separators: " ".to_owned(),
+                columns: vec![1, 2, 3, 4],
+                width: 4,
+                numbers: TextNumbers::Newtons,
+            }),
+            ..SerialWire::slip(PortName::System("/dev/ttyACM0".to_owned()))
+        });
+        let mut bench = Bench::new(&floor, "button");
+        bench.run_packets(asked(pace, 8.0), 8.0);
+        assert_eq!(bench.at(EventKind::Released).len(), 1, "{pace} Hz: {:?}", bench.events);
+        assert!(bench.ill.is_empty(), "{pace} Hz: {:?}", bench.ill);
+        let timing = bench.assembler.board(0).unwrap().timing;
+        assert_eq!(timing.base, TimeBase::Arrival, "{pace} Hz");
+        assert_eq!(bench.assembler.counters().lost, 0, "{pace} Hz");
     }
 }
 

@@ -62,7 +62,8 @@ impl Run {
 
     /// Negative log likelihood (nats) of the repetition by chance, given the probabilities that the sensor reads the
     /// same value after 8 ms, and after a period of hum; zero before [`REPEATED_FOR`] has passed. Its readings are
-    /// `interval_ms` apart.
+    /// `interval_ms` apart. Only readings that repeat an earlier one count: two values of a slow board fill the time by
+    /// themselves.
     ///
     /// A repetition in order may have any of `lags` lags, which reduces the result by ln `lags`.
     pub(super) fn nats(&self, [same, in_order]: [f32; 2], lags: u32, interval_ms: f32, now: Instant) -> f32 {
@@ -71,10 +72,10 @@ impl Run {
         let has_lasted = |since: Instant| now.since(since) >= REPEATED_FOR;
         let mut nats: f32 = 0.0;
         if has_lasted(self.alike_since) {
-            nats = nats.max(of(self.alike, same));
+            nats = nats.max(of(self.alike.saturating_sub(1), same));
         }
         if has_lasted(self.two_since) {
-            nats = nats.max(of(self.two, TWO_VALUES * same));
+            nats = nats.max(of(self.two.saturating_sub(2), TWO_VALUES * same));
         }
         if self.cycle > 0 {
             nats = nats.max(of(self.cycle, in_order) - (lags as f32).ln());
@@ -127,6 +128,14 @@ mod tests {
         }
         assert!(run.nats([0.001; 2], 1, 20.0, now) > 30.0);
         assert!(run.nats([0.3; 2], 1, 20.0, now) < 10.0);
+    }
+
+    #[test]
+    fn two_readings_of_a_slow_board_repeat_nothing_however_long_the_third_takes() {
+        let (mut run, now) = (Run::default(), Instant::from_millis(5));
+        run.read(7, now);
+        run.read(9, now + Duration::from_millis(50));
+        assert_eq!(run.nats([1e-6; 2], 1, 50.0, now + Duration::from_millis(149)), 0.0);
     }
 
     #[test]
