@@ -158,14 +158,16 @@ impl TimedStream {
         }
         self.jump = None;
         if step < 0 {
-            // It was overtaken: its sample is older than the one in use.
+            // It was overtaken: its sample is older than the one in use. It was counted as lost, unless its stamp is too
+            // coarse to show one lost packet.
+            let is_counted = self.base != TimeBase::Milliseconds || self.period_ns() > 2 * SLOT_NS;
+            self.position += i64::from(!is_counted);
             counters.lost = counters.lost.saturating_sub(1);
             counters.late += 1;
             loss.found();
             return None;
         }
-        let skipped = (passed_ns + self.period_ns() / 2) / self.period_ns().max(1) - 1;
-        self.count(now_ns, skipped.max(0), loss, counters);
+        self.count(now_ns, self.skipped(passed_ns), loss, counters);
         let own_ns = last.own_ns + passed_ns;
         let leak_ns = ((now_ns - last.arrived_ns) as f64 * LEAK_NS_PER_S / 1e9) as i64;
         let offset_ns = (last.offset_ns + leak_ns).min(now_ns - own_ns);
@@ -192,6 +194,17 @@ impl TimedStream {
             TimeBase::Milliseconds => step.saturating_mul(SLOT_NS),
             TimeBase::Packets | TimeBase::Arrival => (step as f64 * self.pace.exact_period_ns()) as i64,
         }
+    }
+
+    /// The number of lost packets in so much of the board's own time; by milliseconds, the least that the two stamps
+    /// allow, each of which is up to a millisecond early.
+    fn skipped(&self, passed_ns: i64) -> i64 {
+        let period_ns = self.period_ns();
+        let periods = match self.base {
+            TimeBase::Milliseconds => (passed_ns - SLOT_NS + period_ns - 1) / period_ns,
+            TimeBase::Packets | TimeBase::Arrival => (passed_ns + period_ns / 2) / period_ns,
+        };
+        (periods - 1).max(0)
     }
 
     /// Counts a packet after `skipped` lost ones.
