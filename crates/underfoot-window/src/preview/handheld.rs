@@ -9,7 +9,7 @@ use crate::platform;
 pub(super) const TARGET: f32 = 44.0;
 
 /// Room around the icon of a button for fingers, which makes it about as wide as high, in points.
-const ICON_PADDING: egui::Vec2 = vec2(15.0, 4.0);
+const ICON_PADDING: egui::Vec2 = vec2(15.5, 4.0);
 
 /// Room beside the word of a button for fingers, in points.
 const WORD_PADDING: f32 = 11.0;
