@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use rosc::{OscPacket, OscType, decoder};
 use x11rb::connection::Connection;
-use x11rb::protocol::xproto::ConnectionExt as _;
+use x11rb::protocol::xproto::{ConnectionExt as _, KeyButMask};
 use x11rb::rust_connection::RustConnection;
 
 use crate::holds::client::Client;
@@ -84,11 +84,19 @@ impl Observer for OscDesk {
     }
 }
 
-/// A virtual X display, and the state of its space bar.
+/// A key of a virtual display, or the left button of its mouse.
+#[derive(Clone, Copy)]
+enum Observed {
+    /// The space bar, by its code.
+    Space(u8),
+    LeftButton,
+}
+
+/// A virtual X display, and the state of its space bar or of its mouse.
 struct VirtualScreen {
     server: Xvfb,
     connection: RustConnection,
-    code: u8,
+    observed: Observed,
 }
 
 impl VirtualScreen {
@@ -102,7 +110,12 @@ impl VirtualScreen {
         let per_key = usize::from(mapping.keysyms_per_keycode);
         let at = mapping.keysyms.chunks(per_key).position(|keysyms| keysyms[0] == 0x20).unwrap();
         let code = first + u8::try_from(at).unwrap();
-        Some(Self { server, connection, code })
+        Some(Self { server, connection, observed: Observed::Space(code) })
+    }
+
+    /// Observes the left button of the mouse.
+    fn with_button(self) -> Self {
+        Self { observed: Observed::LeftButton, ..self }
     }
 
     fn target(&self) -> String {
@@ -112,8 +125,17 @@ impl VirtualScreen {
 
 impl Observer for VirtualScreen {
     fn is_down(&mut self) -> bool {
-        let keys = self.connection.query_keymap().unwrap().reply().unwrap().keys;
-        keys[usize::from(self.code / 8)] & (1 << (self.code % 8)) != 0
+        match self.observed {
+            Observed::Space(code) => {
+                let keys = self.connection.query_keymap().unwrap().reply().unwrap().keys;
+                keys[usize::from(code / 8)] & (1 << (code % 8)) != 0
+            }
+            Observed::LeftButton => {
+                let root = self.connection.setup().roots[0].root;
+                let pointer = self.connection.query_pointer(root).unwrap().reply().unwrap();
+                pointer.mask.contains(KeyButMask::BUTTON1)
+            }
+        }
     }
 }
 
@@ -222,16 +244,22 @@ fn an_osc_address_that_is_held_comes_up_whatever_dies() {
 #[test]
 fn a_key_that_is_held_comes_up_whatever_dies() {
     let Some(mut screen) = VirtualScreen::open() else { return };
-    let (site, _desk) = site_with_key(&screen);
+    let (site, _desk) = site_with(&screen, r#"While(pressed, Key("viewer", "space"))"#);
     comes_up_soon(&site, &mut screen);
 }
 
-/// A site whose pedal holds a key on `screen` and an address of a desk.
-fn site_with_key(screen: &VirtualScreen) -> (Site, OscDesk) {
+#[test]
+fn a_mouse_button_that_is_held_comes_up_whatever_dies() {
+    let Some(mut screen) = VirtualScreen::open().map(VirtualScreen::with_button) else { return };
+    let (site, _desk) = site_with(&screen, r#"While(pressed, Button("viewer", left))"#);
+    comes_up_soon(&site, &mut screen);
+}
+
+/// A site whose pedal sends `send` to `screen`, and whose slider sends to a desk.
+fn site_with(screen: &VirtualScreen, send: &str) -> (Site, OscDesk) {
     let (site, desk) = (Site::new(), OscDesk::new());
     let targets = format!("{}, {}", screen.target(), desk.target());
-    let page = page(&targets, r#"While(pressed, Key("viewer", "space"))"#);
-    std::fs::write(site.folder().join("page.ron"), page).unwrap();
+    std::fs::write(site.folder().join("page.ron"), page(&targets, send)).unwrap();
     (site, desk)
 }
 
@@ -240,7 +268,16 @@ fn site_with_key(screen: &VirtualScreen) -> (Site, OscDesk) {
 #[ignore = "takes ten minutes; figures of a machine that is busy say nothing"]
 fn twenty_rounds_of_each_end_of_a_key() {
     let Some(mut screen) = VirtualScreen::open() else { return };
-    let (site, _desk) = site_with_key(&screen);
+    let (site, _desk) = site_with(&screen, r#"While(pressed, Key("viewer", "space"))"#);
+    twenty_rounds(&site, &mut screen);
+}
+
+/// Twenty rounds of each end, the median and the longest time: for an idle machine, in a release build.
+#[test]
+#[ignore = "takes ten minutes; figures of a machine that is busy say nothing"]
+fn twenty_rounds_of_each_end_of_a_mouse_button() {
+    let Some(mut screen) = VirtualScreen::open().map(VirtualScreen::with_button) else { return };
+    let (site, _desk) = site_with(&screen, r#"While(pressed, Button("viewer", left))"#);
     twenty_rounds(&site, &mut screen);
 }
 
