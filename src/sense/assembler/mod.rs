@@ -78,7 +78,7 @@ use crate::wire::{LinkCounters, SensorPacket};
 /// after silence and were more than 20 ms on their way.
 ///
 /// **Trust.** A board without a usable sample for 100 ms becomes [`Quality::Stale`] (below 30 Hz: for three periods,
-/// 150 ms at most), and so does one that rebooted,
+/// 142 ms at most), and so does one that rebooted,
 /// for at least one frame. Readings of a loaded board that all repeat those of the packet before are not usable if
 /// the sensors' noise makes that improbable: the converters are frozen ([`BoardStatus::frozen`]). The sensors of a
 /// tile become [`Quality::Stale`] as well if two of them repeat by themselves ([`Assembler::repeating`]). A stale

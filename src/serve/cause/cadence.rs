@@ -47,8 +47,18 @@ pub(super) struct Cadence {
     before: u32,
     span: Option<Span>,
     wrap: Option<Wrap>,
-    /// End of the last complete span, with its classification and rate (1/s).
-    judged: Option<(Instant, Count, f32)>,
+    /// End of the last complete span, and its result.
+    judged: Option<(Instant, CountedRate)>,
+}
+
+/// The numbering of one span, and its rates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CountedRate {
+    pub(super) count: Count,
+    /// Packets a second; of a board that counts by one, with the lost ones.
+    pub(super) hz: f32,
+    /// Increase of the numbers a second, also over packets that did not come in.
+    pub(super) numbers_hz: f32,
 }
 
 /// Packet counts of one span, by the difference from the previous number.
@@ -132,14 +142,12 @@ impl Span {
         }
     }
 
-    /// Returns the samples per second of the board, for a board with numbering `count` and a span of `seconds`.
-    fn rate(&self, count: Count, seconds: f32) -> f32 {
-        let samples = match count {
-            // Lost packets were samples as well.
-            Count::Steady => u64::from(self.ones) + self.stepped,
-            _ => u64::from(self.packets),
-        };
-        samples as f32 / seconds
+    /// The rates of a board with numbering `count`, over a span of `seconds`.
+    fn rate(&self, count: Count, seconds: f32) -> CountedRate {
+        let numbers_hz = (u64::from(self.ones) + self.stepped) as f32 / seconds;
+        // Lost packets were samples as well.
+        let hz = if count == Count::Steady { numbers_hz } else { self.packets as f32 / seconds };
+        CountedRate { count, hz, numbers_hz }
     }
 }
 
@@ -183,16 +191,16 @@ impl Cadence {
             (Count::Steady, Some(wrap)) if wrap.times > 1 => Count::Restarts(wrap.after),
             (count, _) => count,
         };
-        self.judged = Some((now, count, span.rate(count, passed.as_secs_f32())));
+        self.judged = Some((now, span.rate(count, passed.as_secs_f32())));
         self.span = Some(Span::at(now));
     }
 
-    /// Returns the numbering and the packets per second; `None` if there is no recent classification.
-    pub(super) fn judged(&self, now: Instant) -> Option<(Count, f32)> {
+    /// Returns the numbering and its rates; `None` if there is no recent classification.
+    pub(super) fn judged(&self, now: Instant) -> Option<CountedRate> {
         /// Long enough for boards that send five packets in ten seconds.
         const LATELY: Duration = Duration::from_secs(10);
-        let (at, count, hz) = self.judged?;
-        (now.since(at) < LATELY).then_some((count, hz))
+        let (at, found) = self.judged?;
+        (now.since(at) < LATELY).then_some(found)
     }
 }
 
@@ -226,7 +234,7 @@ mod tests {
             end = Instant::from_micros(at_us);
             cadence.note(number, end);
         }
-        cadence.judged(end)
+        cadence.judged(end).map(|found| (found.count, found.hz))
     }
 
     fn count(number: impl Fn(u32) -> u32) -> Count {
@@ -283,7 +291,7 @@ mod tests {
             let now = Instant::from_millis(ms.into());
             cadence.note(ms % 65_536, now);
             if ms % 10_000 == 0 {
-                counts.extend(cadence.judged(now).map(|(count, _)| count));
+                counts.extend(cadence.judged(now).map(|found| found.count));
             }
         }
         assert_eq!(counts.first(), Some(&Count::Steady));
@@ -311,7 +319,7 @@ mod tests {
                     cadence.note(n, now);
                 }
             }
-            let (count, hz) = cadence.judged(Instant::from_millis(4000)).unwrap();
+            let CountedRate { count, hz, .. } = cadence.judged(Instant::from_millis(4000)).unwrap();
             prop_assert_eq!(count, Count::Steady);
             prop_assert!((hz / 1000.0 - 1.0).abs() < 0.2, "{}", hz);
         }

@@ -7,7 +7,7 @@ mod tests;
 
 use std::time::Duration;
 
-use self::cadence::{Cadence, Count};
+use self::cadence::{Cadence, Count, CountedRate};
 use self::range::Range;
 use crate::floor::Board;
 use crate::sense::{Assembler, ForceFrame, Quality, TareOutcome, TimeBase};
@@ -177,12 +177,12 @@ impl CauseWatch {
         let is_limited = self.limited.has_grown(HOLDS, now);
         let counted =
             (0..).zip(&self.cadences).zip(&self.written_hz).find_map(|((board, cadence), written)| {
-                let (count, hz) = cadence.judged(now)?;
+                let CountedRate { count, hz, numbers_hz } = cadence.judged(now)?;
                 let timing = assembler.board(board)?.timing;
                 match count {
                     // The gateway rejected some packets because there were too many.
-                    Count::Steps(step) if is_limited => {
-                        Some(LinkCause::RateHigh { board, hz: hz * step as f32 })
+                    Count::Steps(_) | Count::Jumps if is_limited => {
+                        Some(LinkCause::RateHigh { board, hz: numbers_hz })
                     }
                     // Its numbers need not count packets.
                     _ if timing.base != TimeBase::Packets => rate(board, timing.hz, *written),

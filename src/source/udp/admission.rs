@@ -7,12 +7,20 @@ use std::time::Duration;
 use arrayvec::ArrayVec;
 
 use super::senders::Senders;
-use crate::floor::{Floor, Network};
+use crate::floor::{Board, Floor, Network};
 use crate::units::Instant;
-use crate::wire::{Batch, LinkCounters};
+use crate::wire::{BOARD_RATES_HZ, Batch, LinkCounters};
 
-/// Frames that a board sends in a second.
-const FRAMES_PER_SECOND: u32 = 1000;
+/// Packets of a board a second, beyond its rate in the floor file, that a sender may send; at least twice those of a
+/// board that sends once a millisecond.
+const MORE_THAN_WRITTEN: f32 = 2.0;
+const FEWEST_HZ: f32 = 2000.0;
+
+/// Packets a second of a board without a written rate: a quarter more than the fastest ones send.
+const UNWRITTEN_HZ: f32 = 1.25 * BOARD_RATES_HZ[1];
+
+/// Time for which a sender may send all its packets at once after a silence.
+const BURST: Duration = Duration::from_millis(500);
 
 /// Rate and burst of requests of one app: ten controls at the rate of a screen, and the state of every control of a
 /// large layout at once.
@@ -72,6 +80,11 @@ impl fmt::Display for AdmissionRefusal {
     }
 }
 
+/// Maximum number of packets of `board` a second.
+fn most_hz(board: &Board) -> f32 {
+    board.rate_hz.map_or(UNWRITTEN_HZ, |hz| (MORE_THAN_WRITTEN * hz).max(FEWEST_HZ))
+}
+
 /// The admission rules of one source.
 #[derive(Debug)]
 pub(super) struct Admission {
@@ -90,10 +103,11 @@ pub(super) struct Admission {
 impl Admission {
     /// Allows boards from the floor's networks, or from this machine if it lists none; apps from this machine.
     pub(super) fn new(floor: &Floor) -> Self {
-        let boards = u32::try_from(floor.boards.len()).unwrap_or(u32::MAX).max(1);
-        // Twice the rate of the boards, for each sender: one computer may send for all of them.
-        let every = Duration::from_micros((500_u64 / u64::from(boards)).max(1));
-        let burst = boards.saturating_mul(FRAMES_PER_SECOND);
+        // One computer may send for all boards.
+        let hz = floor.boards.iter().map(most_hz).sum::<f32>().max(FEWEST_HZ);
+        let every = Duration::from_secs_f32(hz.recip());
+        // The cast saturates.
+        let burst = (BURST.as_secs_f32() * hz) as u32;
         Self {
             boards: if floor.allow.is_empty() { Network::LOOPBACK.into() } else { floor.allow.clone() },
             apps: Network::LOOPBACK.into(),
@@ -221,5 +235,37 @@ impl Admission {
     pub(super) fn is_answered(&self, sender: SocketAddr, way: OscArrival) -> bool {
         let is_port = way == if self.has_own_port { OscArrival::OwnPort } else { OscArrival::Plain };
         is_port && self.is_app(sender.ip())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::floor::Geometry;
+
+    /// Share of the packets of a board at `hz` that pass in eight seconds, on a floor of one board with this rate.
+    fn passed(written: Option<f32>, hz: u32) -> f32 {
+        let mut floor = Floor::of(Geometry::of_paper_tiles(1, 1).unwrap());
+        floor.boards[0].rate_hz = written;
+        let mut admission = Admission::new(&floor);
+        let sender = SocketAddr::from(([127, 0, 0, 1], 9000));
+        let at = |n: u32| Instant::from_micros(u64::from(n) * 1_000_000 / u64::from(hz));
+        let passed = (0..8 * hz).filter(|n| admission.datagram(sender, false, at(*n)).is_ok()).count();
+        passed as f32 / (8 * hz) as f32
+    }
+
+    #[test]
+    fn a_board_passes_at_every_rate_that_the_assembler_takes() {
+        for hz in [20, 1000, 2000, 4000] {
+            assert_eq!(passed(None, hz), 1.0, "{hz} Hz");
+            assert_eq!(passed(Some(hz as f32), hz), 1.0, "{hz} Hz, written");
+        }
+    }
+
+    #[test]
+    fn a_sender_of_more_than_its_boards_send_is_limited() {
+        assert!(passed(None, 20_000) < 0.35);
+        assert!(passed(Some(1000.0), 20_000) < 0.15);
+        assert!(passed(Some(20.0), 20_000) < 0.15);
     }
 }
