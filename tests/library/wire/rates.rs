@@ -297,7 +297,7 @@ fn asked(pace: u64, end_s: f64) -> Vec<SensorPacket> {
         let n = packets.len() as u64;
         // From second to second the computer is busier or less busy.
         let busy = 1.0 + 0.3 * chance(at_us / 1_000_000);
-        at_us += (1e6 / pace as f64 * busy) as u64 + if n % (pace / 10) == 0 { 5000 } else { 0 };
+        at_us += (1e6 / pace as f64 * busy) as u64 + if n.is_multiple_of(pace / 10) { 5000 } else { 0 };
         let readings = counts(at_us as f64 / 1e6, n, 40.0);
         packets.push(SensorPacket {
             board: 0,
