@@ -215,6 +215,8 @@ export class Edition {
 
   async picture(name) {
     const folder = Edition.pictures;
-    if (folder) await this.page.screenshot({ path: path.join(folder, `${name}.png`) });
+    if (!folder) return;
+    fs.mkdirSync(folder, { recursive: true });
+    await this.page.screenshot({ path: path.join(folder, `${name}.png`) });
   }
 }
