@@ -70,7 +70,7 @@ class Viewer:
     def steps(self):
         def image_is(number):
             def check(_, now, __):
-                return self.image(now) == number, f"shows image {self.image(now)} of {IMAGES}, not {number}"
+                return self.image(now) == number, f"shows image {self.image(now)} of {IMAGES}; {number} is due"
             return check
 
         def window_changes(before, now, _):

@@ -46,7 +46,7 @@ pub use supervisor::GuardianCommand;
 /// Time between two heartbeats.
 const BEAT: Duration = Duration::from_millis(20);
 
-/// Longest time without a heartbeat, or without its acknowledgement, before everything is released.
+/// Longest time without a heartbeat before the guardian releases everything.
 ///
 /// With a heartbeat that is `BEAT` old, a poll that is `POLLED` old and one turn of the threads this stays below
 /// 150 ms.

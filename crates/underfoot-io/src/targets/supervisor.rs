@@ -14,13 +14,17 @@ use underfoot::sink::{Rank, claim_priority};
 
 use super::link::{FromGuardian, ToGuardian, next, put};
 use super::standby::Standby;
-use super::{BEAT, PATIENCE, POLLED};
+use super::{BEAT, POLLED};
 
 /// Makes the command that starts a guardian: its standard input and output are the link.
 pub type GuardianCommand = Box<dyn FnMut() -> Command + Send>;
 
 /// Least time between two starts of a guardian that ends at once.
 const AGAIN: Duration = Duration::from_millis(200);
+
+/// Longest time for a guardian to acknowledge a heartbeat. Shorter than [`super::PATIENCE`], since the release takes longer
+/// then: JACK needs some 40 ms from the guardian's end to the first message of the server's own port.
+const ANSWERING: Duration = Duration::from_millis(60);
 
 /// Longest time for a guardian to start, connect and release everything: a machine that boots is slow.
 const STARTING: Duration = Duration::from_secs(10);
@@ -174,7 +178,7 @@ impl GuardianSupervisor {
                 Err(std::sync::mpsc::TryRecvError::Disconnected) => return false,
             }
         }
-        let patience = if guardian.is_ready { PATIENCE } else { STARTING };
+        let patience = if guardian.is_ready { ANSWERING } else { STARTING };
         guardian.waits.is_none_or(|since| since.elapsed() < patience)
     }
 

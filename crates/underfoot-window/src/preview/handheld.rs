@@ -12,7 +12,7 @@ pub(super) const TARGET: f32 = 44.0;
 const ICON_PADDING: egui::Vec2 = vec2(15.5, 4.0);
 
 /// Room beside the word of a button for fingers, in points.
-const WORD_PADDING: f32 = 11.0;
+const WORD_PADDING: f32 = 11.5;
 
 /// Width below which a window counts as one in a hand, in points: phones that are held upright have 320 to 480.
 const NARROW: f32 = 600.0;
@@ -125,6 +125,11 @@ pub(super) fn fit_targets(ctx: &Context, for_fingers: bool) {
 /// Whether the buttons of `ui` have the size of fingers.
 pub(super) fn is_for_fingers(ui: &Ui) -> bool {
     ui.spacing().interact_size.y >= TARGET
+}
+
+/// Side of a target that has `usual` points for a mouse.
+pub(super) fn side(ui: &Ui, usual: f32) -> f32 {
+    if is_for_fingers(ui) { TARGET } else { usual }
 }
 
 /// Shows a button with a word, whose sides are nearer to it than those of an icon where fingers use it.

@@ -4,7 +4,7 @@ use std::mem::take;
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Sense, Ui, WidgetInfo, vec2};
+use eframe::egui::{Sense, Ui, Vec2, WidgetInfo, vec2};
 
 use super::edited::EditedLayout;
 use super::in_place::InPlace;
@@ -12,6 +12,7 @@ use super::list_keys::go_on;
 use super::menu::show_menu;
 use super::{Pane, Panes};
 use crate::edit::{Address, RecordList};
+use crate::preview::handheld::side;
 use crate::preview::style::quiet;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::{Theme, in_drawn_order};
@@ -118,7 +119,7 @@ enum Sign {
 impl Sign {
     /// Draws the sign, because the window's font lacks it; faint while it is off.
     fn button(self, ui: &mut Ui, theme: &Theme, is_on: bool) -> egui::Response {
-        let (rect, response) = ui.allocate_exact_size(vec2(18.0, 18.0), Sense::click());
+        let (rect, response) = ui.allocate_exact_size(Vec2::splat(side(ui, 18.0)), Sense::click());
         let is_touched = response.hovered() || response.has_focus();
         let ink = if is_on || is_touched { theme.ink } else { theme.quiet.mix(theme.plate, 0.25) };
         let line = egui::Stroke::new(1.3, color(ink));

@@ -42,8 +42,7 @@ fn assert_for_fingers(room: &Room, screen: Size, at: &str) {
     assert!(found.len() > 8, "{at}: {found:?}");
     // The floor's own controls are no buttons of the window.
     for (name, rect) in found.iter().filter(|(name, _)| !map().widgets.iter().any(|one| one.label == *name)) {
-        // Icons differ by a point in width.
-        assert!(rect.height() >= TARGET && rect.width() >= TARGET - 1.0, "{at}: {name} is {}", rect.size());
+        assert!(rect.height() >= TARGET && rect.width() >= TARGET, "{at}: {name} is {}", rect.size());
         let inside = Rect::from_min_size(Pos2::ZERO, screen + Size::splat(16.0));
         assert!(inside.contains_rect(*rect), "{at}: {name} is at {rect}");
     }
@@ -71,6 +70,26 @@ fn every_button_of_a_phone_and_a_tablet_is_for_fingers_and_the_floor_keeps_half_
         let share = share_of(&room, "Drawing board", screen);
         assert!(share >= 0.5, "{at}: the drawing board has {share}");
         assert!(!room.says("Search the things"), "{at}: panels are folded");
+    }
+}
+
+#[test]
+fn the_lists_of_design_are_for_fingers_and_two_numbers_of_a_field_stand_side_by_side() {
+    let mut room = touched(1280.0, 2000.0);
+    room.window.get_by_label("Design").click();
+    room.run(8);
+    room.window.get_by_label("Control home").click();
+    room.run(8);
+    let found = buttons(&room);
+    for name in ["Hide: home", "Lock: home", "Reset Text on it"] {
+        let Some((_, rect)) = found.iter().find(|(label, _)| label == name) else {
+            panic!("{name} is not there: {found:?}")
+        };
+        assert!(rect.height() >= TARGET && rect.width() >= TARGET, "{name}: {rect:?}");
+    }
+    for [first, second] in [["Place: east", "Place: north"], ["Size: width", "Size: depth"]] {
+        let [first, second] = [first, second].map(|name| room.window.get_by_label(name).rect());
+        assert_eq!(first.center().y, second.center().y);
     }
 }
 

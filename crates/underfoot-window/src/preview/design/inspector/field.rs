@@ -9,6 +9,7 @@ use eframe::egui::{Button, Color32, Response, RichText, Sense, Stroke, Ui, Widge
 use super::super::edited::EditedLayout;
 use super::words::{choice, label};
 use crate::edit::{Address, Document, Edit, FieldOrigin, Property};
+use crate::preview::handheld::side;
 use crate::preview::icons::Icon;
 use underfoot::layout::Widget;
 use underfoot_scene::egui_painter::color;
@@ -29,11 +30,21 @@ pub(in crate::preview::design) const EDITOR_PX: f32 = 126.0;
 /// Width of the mark before it, in points.
 const MARK_PX: f32 = 8.0;
 
+/// Width of the button that resets a field, in points, for a mouse.
+const RESET_PX: f32 = 22.0;
+
+/// Height of a row, in points, for a mouse.
+const ROW_PX: f32 = 24.0;
+
 /// Width of the button that resets a field, in points.
-pub(super) const RESET_PX: f32 = 22.0;
+pub(super) fn reset_px(ui: &Ui) -> f32 {
+    side(ui, RESET_PX)
+}
 
 /// Height of a row, in points.
-pub(super) const ROW_PX: f32 = 24.0;
+pub(super) fn row_px(ui: &Ui) -> f32 {
+    side(ui, ROW_PX)
+}
 
 /// Fields that every record must keep.
 const KEPT: [&str; 3] = ["id", "kind", "at"];
@@ -116,9 +127,9 @@ pub(super) fn name(ui: &mut Ui, field: &ShownField<'_>) {
 
 /// A name in the column before the editors, with a line break where the row has no room for it.
 pub(super) fn name_cell(ui: &mut Ui, text: RichText) -> Response {
-    let rest = MARK_PX + EDITOR_PX + RESET_PX + 3.0 * ui.spacing().item_spacing.x;
+    let rest = MARK_PX + EDITOR_PX + reset_px(ui) + 3.0 * ui.spacing().item_spacing.x;
     let width = (ui.max_rect().width() - rest).clamp(WORD_PX, NAME_PX);
-    let size = vec2(width, ROW_PX);
+    let size = vec2(width, row_px(ui));
     let cell = ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_width(width);
         ui.set_max_width(width);
@@ -130,7 +141,7 @@ pub(super) fn name_cell(ui: &mut Ui, text: RichText) -> Response {
 /// The beginning of a row without a mark; returns its name.
 pub(in crate::preview::design) fn unmarked_name(ui: &mut Ui, text: &str) -> Response {
     ui.spacing_mut().item_spacing.x = GAP_PX;
-    ui.allocate_exact_size(vec2(MARK_PX, ROW_PX), Sense::hover());
+    ui.allocate_exact_size(vec2(MARK_PX, row_px(ui)), Sense::hover());
     name_cell(ui, RichText::new(text))
 }
 
@@ -182,8 +193,8 @@ pub(super) fn reset(ui: &mut Ui, field: &ShownField<'_>) -> Option<Edit> {
     }
     // It ends the row: no other button gets this padding.
     ui.spacing_mut().button_padding.x = 2.0;
-    let button =
-        ui.add(Button::new(Icon::RotateCcw.unicode().to_string()).small().min_size(vec2(RESET_PX, 0.0)));
+    let size = vec2(reset_px(ui), side(ui, 0.0));
+    let button = ui.add(Button::new(Icon::RotateCcw.unicode().to_string()).small().min_size(size));
     let name = label(&property.name);
     button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Reset {name}")));
     let back = match property.inherited.as_str() {

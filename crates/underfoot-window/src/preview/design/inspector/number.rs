@@ -3,7 +3,7 @@
 use eframe::egui::accesskit::Role;
 use eframe::egui::{DragValue, Response, Slider, SliderClamping, Ui, WidgetInfo};
 
-use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, RESET_PX, ShownField};
+use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, ShownField, reset_px};
 use super::words::{label, start, usual_range};
 use crate::edit::{Edit, pressing};
 use underfoot::units::Newtons;
@@ -51,7 +51,7 @@ pub(super) fn number(ui: &mut Ui, field: NumberField<'_>, value: f64) -> (Option
     let mut now = value;
     let slid = usual_range(field.name).map(|(from, to)| {
         let gaps = 2.0 * ui.spacing().item_spacing.x;
-        ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_PX - RESET_PX - gaps).max(30.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_PX - reset_px(ui) - gaps).max(30.0);
         let slider = Slider::new(&mut now, from..=to).show_value(false).trailing_fill(true);
         let slider = ui.add(slider.clamping(SliderClamping::Never).step_by(step(from, to, whole)));
         slider.widget_info(|| WidgetInfo::slider(true, value, format!("{name}: slider")));

@@ -4,7 +4,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{DragValue, Ui, WidgetInfo};
 use glam::Vec2;
 
-use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, ROW_PX, ShownField, unit_name};
+use super::field::{EDITOR_PX, FieldAnswer, FieldEdits, ShownField, row_px, unit_name};
 use super::number::two_numbers;
 use super::words::label;
 use crate::edit::{Edit, FieldOrigin};
@@ -26,7 +26,7 @@ pub(super) fn place(ui: &mut Ui, field: &ShownField<'_>, before: [f64; 2]) -> Fi
             .update_while_editing(false);
         // Both numbers are as wide as one text.
         let width = 0.5 * (EDITOR_PX - ui.spacing().item_spacing.x);
-        let drag = ui.add_sized([width, ROW_PX], drag);
+        let drag = ui.add_sized([width, row_px(ui)], drag);
         let name = format!("{spoken}: {}", names[side]);
         drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, &name));
         let unit = unit_name(&field.edited.document);

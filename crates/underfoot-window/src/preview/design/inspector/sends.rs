@@ -4,7 +4,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{self, ComboBox, DragValue, RichText, Ui, WidgetInfo};
 
 use super::super::edited::EditedLayout;
-use super::field::{FieldEdits, ROW_PX, TypedTexts};
+use super::field::{FieldEdits, TypedTexts, row_px};
 use super::send_choices::{content_name, contents, first, refitted, time_name, times};
 use super::send_texts::{MessageText, any, no_key, no_note};
 use super::{FrameEdits, Inspector};
@@ -50,7 +50,7 @@ impl Inspector {
         let header = egui::CollapsingHeader::new(RichText::new(title).strong()).id_salt("messages");
         let shown = header.default_open(count > 0).show_unindented(ui, |ui| {
             // Names and fields of a row have one middle.
-            ui.spacing_mut().interact_size.y = ROW_PX;
+            ui.spacing_mut().interact_size.y = row_px(ui);
             let written = edited.document.written(record, FIELD);
             if written.is_some_and(|text| text.contains('{')) {
                 // The fields of a pattern belong to a whole grid.
