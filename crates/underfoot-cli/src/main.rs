@@ -34,6 +34,7 @@ mod measure;
 mod meter;
 mod number;
 mod outputs;
+mod own_program;
 mod people;
 #[cfg(feature = "lab")]
 mod plan;

@@ -1,12 +1,11 @@
 //! Options for the messages of a layout to other programs.
 
-use std::process::Command;
-
 use underfoot::layout::Layout;
 use underfoot::messages::{Destination, MessagePlan, TargetSort};
 use underfoot_io::targets::{LoadedPlan, TargetSink, redirect};
 
 use super::failure::Failure;
+use super::own_program;
 
 /// Options for messages of controls.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -47,12 +46,10 @@ impl SendArgs {
         } else if self.no_send {
             tell_off(layout, "--no-send");
         }
-        let program = std::env::current_exe()
-            .map_err(|error| Failure::Other(format!("this program can't be found: {error}")))?;
-        let command = move || {
-            let mut command = Command::new(&program);
+        let command = || {
+            let mut command = own_program::command()?;
             command.arg("guardian");
-            command
+            Ok(command)
         };
         TargetSink::start(layout, plan, Box::new(command))
             .map_err(|error| Failure::Other(format!("messages can't be sent: {error}")))

@@ -1,12 +1,12 @@
 //! The set-up of a real floor, opened from the window: `underfoot setup --window` as a process of its own.
 
-use std::process::Command;
 use std::thread;
+
+use super::super::own_program;
 
 /// Opens the set-up beside the window, where it stays when the window closes; returns the message for the user.
 pub(super) fn open() -> String {
-    let started =
-        std::env::current_exe().and_then(|program| Command::new(program).args(["setup", "--window"]).spawn());
+    let started = own_program::command().and_then(|mut program| program.args(["setup", "--window"]).spawn());
     // The system keeps an ended process until somebody asks how it ended.
     let waiting = started
         .and_then(|mut child| thread::Builder::new().name("set-up ends".into()).spawn(move || child.wait()));

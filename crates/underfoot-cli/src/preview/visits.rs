@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command as Program, Stdio};
+use std::process::Stdio;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -19,6 +19,7 @@ use underfoot_window::preview::{VisitDesk, VisitForm, VisitOrder, VisitSize, Vis
 
 use super::super::export::{ExportForm, Exported, FILM_WIDTH, RecordedPart, export};
 use super::super::failure::Failure;
+use super::super::own_program;
 
 /// Maximum number of commands that wait: a person's clicks during an export.
 const ORDERS_WAITING: usize = 64;
@@ -204,8 +205,7 @@ impl Clerk {
 
     fn play(&self) -> Result<(), Failure> {
         let failed = |error| Failure::File(self.file.clone(), error);
-        let program = std::env::current_exe().map_err(failed)?;
-        let mut window = Program::new(program);
+        let mut window = own_program::command().map_err(failed)?;
         window.arg("preview").arg(&self.file).stdin(Stdio::null());
         let mut window = window.spawn().map_err(failed)?;
         // The system keeps a process that has ended until somebody waits for it.

@@ -1,11 +1,11 @@
 //! Steps that are other commands, run on the floor file.
 
 use std::path::Path;
-use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::failure::Failure;
+use crate::own_program;
 
 /// Runs other commands of this program. Ctrl-C ends the command, and the set-up only at a question.
 pub(super) struct FloorCommands {
@@ -31,9 +31,9 @@ impl FloorCommands {
         words.extend(["--floor", &floor, "--listen", &self.listen]);
         words.extend(options);
         outln!("$ underfoot {}", words.join(" "));
-        let done = std::env::current_exe().and_then(|program| {
+        let done = own_program::command().and_then(|mut program| {
             self.is_asking.store(false, Ordering::Relaxed);
-            let status = Command::new(program).args(&words).status();
+            let status = program.args(&words).status();
             self.is_asking.store(true, Ordering::Relaxed);
             status
         });

@@ -12,7 +12,12 @@ use serde_json::Value;
 use crate::ports::free_port;
 
 pub(super) fn underfoot() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_underfoot"));
+    underfoot_at(Path::new(env!("CARGO_BIN_EXE_underfoot")))
+}
+
+/// A copy of the program.
+pub(super) fn underfoot_at(file: &Path) -> Command {
+    let mut command = Command::new(file);
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("RUST_LOG");
     command
 }

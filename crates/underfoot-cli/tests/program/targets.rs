@@ -141,12 +141,16 @@ impl Observer for VirtualScreen {
 
 /// The guardian of the running program: its only child.
 pub fn guardian(run: &Run) -> u32 {
+    *children(run).last().expect("a guardian")
+}
+
+fn children(run: &Run) -> Vec<u32> {
     let threads = PathBuf::from(format!("/proc/{}/task", run.child.id()));
-    let children = threads.read_dir().unwrap().flatten().flat_map(|thread| {
+    let of_each = threads.read_dir().unwrap().flatten().flat_map(|thread| {
         let children = std::fs::read_to_string(thread.path().join("children")).unwrap_or_default();
         children.split_whitespace().filter_map(|id| id.parse().ok()).collect::<Vec<u32>>()
     });
-    children.last().expect("a guardian")
+    of_each.collect()
 }
 
 pub fn kill(id: u32, signal: &str) {
@@ -253,6 +257,32 @@ fn a_mouse_button_that_is_held_comes_up_whatever_dies() {
     let Some(mut screen) = VirtualScreen::open().map(VirtualScreen::with_button) else { return };
     let (site, _desk) = site_with(&screen, r#"While(pressed, Button("viewer", left))"#);
     comes_up_soon(&site, &mut screen);
+}
+
+/// An update removes or replaces the file of a program that runs for months.
+#[test]
+fn a_guardian_that_dies_has_a_successor_of_the_same_version_after_an_update() {
+    let mut desk = OscDesk::new();
+    let mut site = Site::new();
+    let page = page(&desk.target(), r#"While(pressed, Osc("desk", "/drive"))"#);
+    std::fs::write(site.folder().join("page.ron"), page).unwrap();
+    let file = site.copy_program().to_owned();
+    let client = Client::new();
+    let run = site.run(&client, &[]);
+    let boards = Boards::start(&site, run.address);
+    until("the key goes down", || desk.is_down());
+    std::fs::remove_file(&file).unwrap();
+    // The new version knows no guardian.
+    std::fs::write(&file, "#!/bin/sh\nexit 1\n").unwrap();
+    let first = guardian(&run);
+    kill(first, "KILL");
+    until("it comes up", || !desk.is_down());
+    let serves = |id: u32| {
+        let words = std::fs::read_to_string(format!("/proc/{id}/cmdline")).unwrap_or_default();
+        id != first && words.contains("guardian")
+    };
+    until("another guardian serves", || children(&run).into_iter().any(serves));
+    drop(boards);
 }
 
 /// A site whose pedal sends `send` to `screen`, and whose slider sends to a desk.

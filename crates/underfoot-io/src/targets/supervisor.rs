@@ -17,7 +17,7 @@ use super::standby::Standby;
 use super::{BEAT, POLLED};
 
 /// Makes the command that starts a guardian: its standard input and output are the link.
-pub type GuardianCommand = Box<dyn FnMut() -> Command + Send>;
+pub type GuardianCommand = Box<dyn FnMut() -> io::Result<Command> + Send>;
 
 /// Least time between two starts of a guardian that ends at once.
 const AGAIN: Duration = Duration::from_millis(200);
@@ -138,7 +138,7 @@ impl GuardianSupervisor {
     }
 
     fn try_start(&mut self) -> io::Result<RunningGuardian> {
-        let mut command = (self.command)();
+        let mut command = (self.command)()?;
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         // Ctrl-C is for the server alone.
         #[cfg(unix)]

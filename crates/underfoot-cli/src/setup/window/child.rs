@@ -1,9 +1,10 @@
 //! The window of the first layout: `underfoot preview` as a process of its own.
 
-use std::process::{Child, Command};
+use std::process::Child;
 
 use super::super::{Args, layout_to_open};
 use crate::failure::Failure;
+use crate::own_program;
 
 /// The open layout. It stays open if the set-up ends.
 pub(super) struct LayoutWindow(Child);
@@ -12,8 +13,8 @@ impl LayoutWindow {
     /// Opens the layout on the floor file; returns also where the layout is.
     pub(super) fn open(args: &Args) -> Result<(Self, String), Failure> {
         let layout = layout_to_open(args)?;
-        let program = std::env::current_exe().map_err(|error| failed(&error))?;
-        let child = Command::new(program)
+        let child = own_program::command()
+            .map_err(|error| failed(&error))?
             .arg("preview")
             .arg(&layout)
             .arg("--floor")

@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, BufReader};
 use std::net::{SocketAddr, UdpSocket};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -17,7 +17,7 @@ use underfoot::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
 use underfoot_sim::{self as sim, Foot, PartConfig, SimConfig, SimFloor, SimulatedSensors};
 
 use super::client::Client;
-use crate::end_to_end::underfoot;
+use crate::end_to_end::underfoot_at;
 use crate::sender::{simulated, small_floor};
 
 const PAGE: &str = r#"Layout(
@@ -42,6 +42,8 @@ pub struct Site {
     pub floor: Floor,
     /// The environment of the program, in addition to that of the test.
     pub environment: Vec<(&'static str, String)>,
+    /// The program's file.
+    program: PathBuf,
     sim: SimFloor,
     format: SensorFormat,
 }
@@ -65,7 +67,16 @@ impl Site {
         let floor = sim::calibrated(&wired, &sim, 7).unwrap();
         save_floor(&floor, &folder.path().join("floor.ron")).unwrap();
         std::fs::write(folder.path().join("page.ron"), PAGE).unwrap();
-        Self { folder, floor, environment: Vec::new(), sim, format }
+        let program = PathBuf::from(env!("CARGO_BIN_EXE_underfoot"));
+        Self { folder, floor, environment: Vec::new(), program, sim, format }
+    }
+
+    /// Runs a copy of the program from now on; returns its file.
+    pub fn copy_program(&mut self) -> &Path {
+        let copy = self.folder.path().join("underfoot");
+        std::fs::copy(&self.program, &copy).unwrap();
+        self.program = copy;
+        &self.program
     }
 
     /// The folder of its files: `page.ron` and `floor.ron`.
@@ -77,7 +88,7 @@ impl Site {
     pub fn run(&self, client: &Client, more: &[&str]) -> Run {
         let address = any_port().local_addr().unwrap();
         let [osc, tuio] = client.addresses().map(|address| address.to_string());
-        let mut child = underfoot()
+        let mut child = underfoot_at(&self.program)
             .current_dir(self.folder.path())
             .envs(self.environment.iter().cloned())
             .args(["run", "page.ron", "--floor", "floor.ron", "--json", "--listen", &address.to_string()])
