@@ -12,7 +12,7 @@ use super::list_keys::go_on;
 use super::menu::show_menu;
 use super::{Pane, Panes};
 use crate::edit::{Address, RecordList};
-use crate::preview::handheld::side;
+use crate::preview::handheld::{is_for_fingers, side, with_word};
 use crate::preview::style::quiet;
 use underfoot_scene::egui_painter::color;
 use underfoot_scene::scene::{Theme, in_drawn_order};
@@ -68,8 +68,11 @@ pub(super) fn list(
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                     ui.add_space(if is_inner { 12.0 } else { 0.0 });
-                    let text = format!("{what} {}", in_drawn_order(&name));
-                    let row = ui.add(egui::Button::selectable(is_selected, text).truncate());
+                    let shown = in_drawn_order(&name);
+                    // The signs of fingers leave room for the name alone.
+                    let text = if is_for_fingers(ui) { shown.into() } else { format!("{what} {shown}") };
+                    let row =
+                        with_word(ui, |ui| ui.add(egui::Button::selectable(is_selected, text).truncate()));
                     row.widget_info(|| {
                         WidgetInfo::selected(Role::Button, true, is_selected, format!("{what} {name}"))
                     });
