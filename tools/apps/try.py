@@ -109,7 +109,7 @@ class Globe:
             return difference(first, now) < 2, f"the picture differs from the first by {difference(first, now):.1f} of 255"
 
         # Its arrows turn the globe about axes that turn with it, and its steps outwards are smaller: back is only nearer than
-        # before. A second step away would differ by half as much again.
+        # before.
         def leads_back(before, now, first):
             away, left = difference(coarse(first), coarse(before)), difference(coarse(first), coarse(now))
             return left < 0.9 * away, f"the picture's large parts differ from the first by {left:.1f} of 255, before by {away:.1f}"

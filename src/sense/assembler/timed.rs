@@ -158,13 +158,15 @@ impl TimedStream {
         }
         self.jump = None;
         if step < 0 {
-            // It was overtaken: its sample is older than the one in use. It was counted as lost, unless its stamp is too
-            // coarse to show one lost packet.
-            let is_counted = self.base != TimeBase::Milliseconds || self.period_ns() > 2 * SLOT_NS;
-            self.position += i64::from(!is_counted);
-            counters.lost = counters.lost.saturating_sub(1);
+            // It was overtaken: its sample is older than the one in use.
             counters.late += 1;
-            loss.found();
+            if self.skipped(2 * self.period_ns()) > 0 {
+                counters.lost = counters.lost.saturating_sub(1);
+                loss.found();
+            } else {
+                // Stamps are too coarse to show one lost packet: it was not counted as one.
+                self.position += 1;
+            }
             return None;
         }
         self.count(now_ns, self.skipped(passed_ns), loss, counters);

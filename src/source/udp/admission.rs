@@ -11,9 +11,10 @@ use crate::floor::{Board, Floor, Network};
 use crate::units::Instant;
 use crate::wire::{BOARD_RATES_HZ, Batch, LinkCounters};
 
-/// Packets of a board a second, beyond its rate in the floor file, that a sender may send; at least twice those of a
-/// board that sends once a millisecond.
+/// Multiple of a board's rate in the floor file that a sender may send.
 const MORE_THAN_WRITTEN: f32 = 2.0;
+
+/// Least limit of a sender (1/s): twice the rate of a board that sends once a millisecond.
 const FEWEST_HZ: f32 = 2000.0;
 
 /// Packets a second of a board without a written rate: a quarter more than the fastest ones send.
