@@ -187,17 +187,28 @@ mod tests {
                 Readings::Counts(pairs.map(|count| count.map(Some)).collect::<Option<_>>()?)
             }
             [OscType::Float(_), ..] => Readings::Newtons(values.iter().map(force).collect::<Option<_>>()?),
-            _ => Readings::Counts(values.iter().map(count).collect::<Option<_>>()?),
+            _ => {
+                let counts: ArrayVec<_, MAX_CHANNELS> = values.iter().map(count).collect::<Option<_>>()?;
+                if 2 * counts.iter().filter(|count| count.is_none()).count() > counts.len() {
+                    // Most are not of 16 bits: the readings keep them for the message about the converter.
+                    let whole = |value: &OscType| value.clone().int().map(f64::from);
+                    let whole = values.iter().filter_map(whole);
+                    Readings::Scaled(whole.map(|count| CountRange::WHOLE.scaled(count)).collect())
+                } else {
+                    Readings::Counts(counts)
+                }
+            }
         };
         Some((message.addr, sequence.cast_unsigned(), readings))
     }
 
     fn datagrams() -> impl Strategy<Value = Vec<u8>> {
         let ints = prop::collection::vec((-2..70_000_i32).prop_map(OscType::Int), 0..30);
+        let finer = prop::collection::vec((-2..1 << 24).prop_map(OscType::Int), 0..30);
         let floats =
             prop::collection::vec(any::<i16>().prop_map(|n| OscType::Float(f32::from(n) / 7.0)), 1..30);
         let blob = prop::collection::vec(any::<u8>(), 0..60).prop_map(|bytes| vec![OscType::Blob(bytes)]);
-        (any::<i32>(), prop_oneof![ints, floats, blob]).prop_map(|(sequence, values)| {
+        (any::<i32>(), prop_oneof![ints, finer, floats, blob]).prop_map(|(sequence, values)| {
             let args = std::iter::once(OscType::Int(sequence)).chain(values).collect();
             encoder::encode(&OscPacket::Message(OscMessage { addr: ADDRESS.into(), args })).unwrap()
         })
