@@ -94,7 +94,8 @@ def measure(program, path, case, options, into, name):
     with open(people, "w") as file:
         file.write(scenario(walkers, options.seconds))
     hud = {"GALLIUM_HUD": "fps", "GALLIUM_HUD_DUMP_DIR": folder, "GALLIUM_HUD_PERIOD": "1", "GALLIUM_HUD_VISIBLE": "0"}
-    window = Window(program, [path, "--scenario", people, "--layers", layers], folder, options.shots, size=SIZE, env=hud)
+    window = Window(program, [path, "--scenario", people, "--layers", layers], folder, options.shots, size=SIZE, env=hud,
+                    reports=False)
     try:
         time.sleep(BEGIN)
         window.shot(name)
@@ -115,7 +116,7 @@ def measure(program, path, case, options, into, name):
 
 def at_rest(program, path, seconds):
     """The share of a core with nobody on the floor."""
-    window = Window(program, [path], size=(1280, 800))
+    window = Window(program, [path], size=(1280, 800), reports=False)
     try:
         window.move(5, 5)
         time.sleep(5)

@@ -30,11 +30,11 @@ class Window(Display):
 
     `actions` lists what a user did, and `count` counts it: each click, drag, key chord and typed word is one. With
     `pictures`, each entry has a picture in the folder `shots`. The screen has `beside` pixels more at the right, as for
-    a projector.
+    a projector. Without `reports`, the program does only what it does for a user, and actions are not waited for.
     """
 
     def __init__(self, program, arguments, folder=None, shots=None, size=SIZE, env=None, beside=0,
-                 command=None):
+                 command=None, reports=True):
         if lacks := missing(*PROGRAMS):
             sys.exit(f"{', '.join(lacks)} missing: apt-get install xvfb xdotool imagemagick")
         self.folder = folder or tempfile.mkdtemp(prefix="underfoot-design-")
@@ -42,10 +42,10 @@ class Window(Display):
         os.makedirs(self.reports, exist_ok=True)
         self.shots, self.pictures = shots, False
         self.actions, self.count = [], 0
-        self.has_reports = reports_screen(program)
+        self.has_reports = reports and reports_screen(program)
         super().__init__((size[0] + beside, size[1]), {
             "XDG_STATE_HOME": os.path.join(self.folder, "state"), "XDG_DATA_HOME": os.path.join(self.folder, "data"),
-            VARIABLE: self.reports, **(env or {})})
+            **({VARIABLE: self.reports} if self.has_reports else {}), **(env or {})})
         self.program = subprocess.Popen([program, *(command or ["preview"]), *arguments,
                                          *([] if command else ["--no-osc", "--json"])], env=self.env,
                                         cwd=self.folder, stdout=open(os.path.join(self.folder, "events"), "w"),

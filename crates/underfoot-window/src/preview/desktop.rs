@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use eframe::egui;
 
-use super::damage::{Damage, Framebuffer, has_graphics_card};
+use super::damage::{Damage, Framebuffer, TopFirst, has_graphics_card};
 use super::{PreviewError, PreviewInput, PreviewOptions};
 use underfoot_scene::letters::Installed;
 
@@ -45,8 +45,10 @@ pub(crate) fn open(
         let app = app(context);
         // Missing letters come from the fonts of this computer, as in pictures.
         context.egui_ctx.add_font_provider(Arc::new(Installed::new()));
-        if context.gl.as_ref().is_some_and(|gl| !has_graphics_card(gl)) {
-            context.egui_ctx.add_plugin(Damage::new(Framebuffer::default()));
+        if let Some(gl) = context.gl.as_ref().filter(|gl| !has_graphics_card(gl)) {
+            let address = context.get_proc_address.as_ref();
+            let top_first = address.and_then(|address| TopFirst::find(gl, &**address));
+            context.egui_ctx.add_plugin(Damage::new(Framebuffer::new(top_first)));
         }
         Ok(app)
     });

@@ -19,7 +19,7 @@ use eframe::egui::{Context, FullOutput, PaintCallbackInfo, Plugin, RawInput, Rec
 use eframe::egui_glow::{CallbackFn, Painter};
 
 #[cfg(not(target_arch = "wasm32"))]
-pub(super) use framebuffer::{Framebuffer, has_graphics_card};
+pub(super) use framebuffer::{Framebuffer, TopFirst, has_graphics_card};
 use picture::Picture;
 
 /// A canvas that keeps its picture from one frame to the next.
