@@ -29,12 +29,13 @@ pub(in crate::preview) struct TopFirst(unsafe extern "system" fn(target: u32, pa
 impl TopFirst {
     const FRAMEBUFFER_FLIP_Y: u32 = 0x8BBB;
 
-    /// Looks for the extension with a function that returns the addresses of the driver's functions.
+    /// Looks for the extension with a function that returns the addresses of the driver's functions. OpenGL ES, which
+    /// lacks the windows' order of colours, has no use for it.
     pub(in crate::preview) fn find(
         gl: &glow::Context,
         address: &dyn Fn(&CStr) -> *const c_void,
     ) -> Option<Self> {
-        if !gl.supported_extensions().contains("GL_MESA_framebuffer_flip_y") {
+        if gl.version().is_embedded || !gl.supported_extensions().contains("GL_MESA_framebuffer_flip_y") {
             return None;
         }
         let address = address(c"glFramebufferParameteri");
@@ -83,7 +84,11 @@ impl Pixels {
             };
             let pixels = Self { size_px, framebuffer, texture };
             gl.bind_texture(glow::TEXTURE_2D, Some(texture));
-            // The order of colours in windows.
+            // With the rows as in windows, the colours too: then the driver copies.
+            let (colours, bits) = match top_first {
+                Some(_) => (glow::BGRA, glow::UNSIGNED_INT_8_8_8_8_REV),
+                None => (glow::RGBA, glow::UNSIGNED_BYTE),
+            };
             gl.tex_image_2d(
                 glow::TEXTURE_2D,
                 0,
@@ -91,8 +96,8 @@ impl Pixels {
                 size_px[0],
                 size_px[1],
                 0,
-                glow::BGRA,
-                glow::UNSIGNED_INT_8_8_8_8_REV,
+                colours,
+                bits,
                 glow::PixelUnpackData::Slice(None),
             );
             gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MAX_LEVEL, 0);
