@@ -29,8 +29,8 @@ pub(in crate::preview) struct TopFirst(unsafe extern "system" fn(target: u32, pa
 impl TopFirst {
     const FRAMEBUFFER_FLIP_Y: u32 = 0x8BBB;
 
-    /// Looks for the extension with a function that returns the addresses of the driver's functions. OpenGL ES, which
-    /// lacks the windows' order of colours, has no use for it.
+    /// Looks for the extension with a function that returns the addresses of the driver's functions. OpenGL ES lacks the
+    /// order of colours in windows, so the extension alone is of no use there.
     pub(in crate::preview) fn find(
         gl: &glow::Context,
         address: &dyn Fn(&CStr) -> *const c_void,
