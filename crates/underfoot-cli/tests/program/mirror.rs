@@ -305,10 +305,13 @@ fn a_layout_from_a_window_is_checked_and_taken_only_where_that_is_allowed() {
     let run = run_at(&site, web, &["--web-layouts"]);
     let (link, news, window) = join(web);
     assert!(window.greeting.takes_layouts);
+    // Both within a second, however long the first is checked.
     link.ask("layout", &[json!(dangerous)]);
-    assert!(refused(&news).contains("HoldToRun"));
     link.ask("layout", &[json!(HARMLESS.replace("slider", "slidr"))]);
-    assert!(refused(&news).contains("one layout a second"));
+    let whys = [refused(&news), refused(&news)];
+    for expected in ["HoldToRun", "one layout a second"] {
+        assert!(whys.iter().any(|why| why.contains(expected)), "{whys:?}");
+    }
     thread::sleep(A_SECOND);
     link.ask("layout", &[json!(HARMLESS.replace("slider", "slidr"))]);
     let why = refused(&news);
