@@ -40,7 +40,7 @@ SLIDERS = """Layout(
 TWELVE = """Layout(
     version: 1,
     title: "Twelve findings",
-    regions: [(id: "all", at: (0.2, 1), size: (5.6, 5))],
+    regions: [(id: "all", at: (0.2, 1), size: (5.6, 5), cursor: Working)],
     stances: [(at: (2, 0), size: (2, 1), label: "Stand here")],
     widgets: [
         (id: "a", kind: "button", at: (0.3, 2.1), size: (0.6, 0.55), label: "A"),

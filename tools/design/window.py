@@ -251,10 +251,12 @@ class Window(Display):
             return
         os.makedirs(self.shots, exist_ok=True)
         if self.has_reports and self.program.poll() is None:
-            # A frame is reported before it is on the screen: once the next ones come, it is there.
-            begun, (x, y) = self.report().get("frame", 0), self.report().get("pointer") or (1, 1)
+            # A frame is reported before it is on the screen: once the next ones come, it is there. The mouse stays where
+            # it is, also outside this window: in it, it would end what goes on in another one.
+            begun = self.report().get("frame", 0)
+            at = dict(line.split("=") for line in self.x("getmouselocation", "--shell").split())
             for nudge in (1, 0, 1, 0):
-                self.x("mousemove", round(x) + nudge, round(y))
+                self.x("mousemove", int(at["X"]) + nudge, at["Y"])
             deadline = time.monotonic() + 5
             while self.report().get("frame", 0) < begun + 2 and time.monotonic() < deadline:
                 time.sleep(0.01)
