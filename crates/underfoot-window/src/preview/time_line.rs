@@ -199,6 +199,8 @@ impl TimeLine {
         };
         if response.drag_started() && ui.input(|i| i.modifiers.shift) {
             let begun = ui.input(|i| i.pointer.press_origin());
+            // The press has taken hold of the head.
+            self.held_s = None;
             self.stretch_from_s = Some(begun.map_or(at_s, |begun| scale.time_at(begun.x)));
         }
         if let Some(from) = self.stretch_from_s {

@@ -95,6 +95,8 @@ fn a_click_on_the_time_line_goes_there_and_a_drag_with_shift_repeats_a_part() {
     }
     let [PlaybackOrder::Repeat(Some((from, to)))] = reel.orders()[..] else { unreachable!() };
     assert!((from - 5.0).abs() < 0.3 && (to - 10.0).abs() < 0.3, "{from} {to}");
+    room.run(2);
+    assert!(room.says("0:04.0"), "the head goes on with the recording");
 }
 
 #[test]

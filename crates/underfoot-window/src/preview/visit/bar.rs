@@ -261,7 +261,9 @@ impl VisitBar {
 /// Length and size: `0:12 · 3.1 MB`, or `0:12 · 2.4 kB` for a little.
 fn written(size: &VisitSize) -> String {
     let (unit, per_unit) = if size.bytes < 100_000 { ("kB", 1e-3) } else { ("MB", 1e-6) };
-    format!("{} · {:.1} {unit}", length(size), size.bytes as f64 * per_unit)
+    let bytes = format!("{:.1} {unit}", size.bytes as f64 * per_unit);
+    // The time line shows the length of a recording that is played.
+    if size.length_s > 0.0 { format!("{} · {bytes}", length(size)) } else { bytes }
 }
 
 /// Minutes and seconds: `0:12`.

@@ -49,7 +49,7 @@ pub struct VisitState {
 /// The size of a recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VisitSize {
-    /// Its length, in seconds.
+    /// Its length, in seconds; 0 if it is unknown.
     pub length_s: f64,
     /// Bytes of its file so far.
     pub bytes: u64,
