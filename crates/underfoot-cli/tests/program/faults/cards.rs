@@ -183,13 +183,18 @@ fn steps_on_a_floor_whose_card_hangs_are_not_felt_all_at_once_when_it_is_back() 
     }
     card.signal("CONT");
     wait_until_it_plays(&live, 1);
-    // A step on the card that is back, so that a delay is measured.
-    live.press(300.0);
-    std::thread::sleep(Duration::from_millis(500));
+    // Steps on the card that is back, so that a delay is measured: several, since a busy machine may lose some.
+    for _ in 0..5 {
+        live.press(300.0);
+        std::thread::sleep(Duration::from_millis(400));
+        live.press(0.0);
+        std::thread::sleep(Duration::from_millis(200));
+    }
     let (code, said) = live.end();
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("Cues: ") && said.contains("muted "), "{said}");
-    let longest = said.split("longest ").nth(1).unwrap().split(' ').next().unwrap();
+    let longest = said.split("longest ").nth(1).and_then(|rest| rest.split(' ').next());
+    let longest = longest.unwrap_or_else(|| panic!("no delay was measured: {said}"));
     // The hang was detected after 200 ms; the steps continued for 4.5 s.
     assert!(longest.parse::<f64>().unwrap() < 1000.0, "{said}");
 }
