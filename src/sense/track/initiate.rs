@@ -30,6 +30,13 @@ pub(super) struct CandidateTrack {
     keeps: Option<(f64, DVec2)>,
 }
 
+impl CandidateTrack {
+    /// A foot of `force` newtons that has landed at `place`, known to `deviation` metres, on these of the loaded tiles.
+    pub(super) fn found(force: f64, place: DVec2, deviation: f64, tiles: SmallVec<[u32; 4]>) -> Self {
+        Self { force, place, deviation, tiles, keeps: None }
+    }
+}
+
 impl Tracker {
     /// Starts new tracks on tiles that other feet already press.
     pub(super) fn initiate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {

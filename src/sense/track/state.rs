@@ -13,6 +13,7 @@ use super::initiate::CandidateTrack;
 use super::outline::FanExtents;
 use super::patch::PatchOnTile;
 use super::reach::NOTHING_BORNE;
+use super::rivals::Lead;
 use super::smoothed::Smoothed;
 use super::strips::Residual;
 use super::touchdown::Touchdown;
@@ -112,6 +113,8 @@ pub(super) struct Track {
     pub accompanied: bool,
     /// Log odds of two feet against one.
     pub explanation: Explanation,
+    /// The rival explanation of its group that is ahead of the filter's, if it is the first of the group.
+    pub lead: Lead,
     /// A foot that may have landed among its tiles in this frame.
     pub candidate: Option<CandidateTrack>,
 }
@@ -163,6 +166,7 @@ impl Track {
             landed_together: false,
             accompanied: false,
             explanation: Explanation::new(),
+            lead: Lead::default(),
             candidate: None,
         };
         foot.reset_covariance(deviation);
