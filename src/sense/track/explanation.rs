@@ -5,6 +5,7 @@
 //!
 //! - **Spread.** The covariance of the tile loads about their common centroid is a lower bound of that of the
 //!   pressure. One foot is long and narrow; two feet are not.
+//! - **Soles.** While it stands, one sole or two are fitted to its loads ([`pair`](super::pair)).
 //! - **Standing.** A walking step never rests. A single contact that carries a person for longer, with no other foot
 //!   near, is both feet.
 //! - **Shift.** In standing, the centre of pressure of a single foot sways by about a centimetre. It moves farther
@@ -23,6 +24,8 @@ use super::params::stillness::STANDS_S;
 use glam::DVec2;
 
 use super::elapsed::Elapsed;
+use super::pair::Pair;
+use super::params::pair::{ONE_SOLE, ONE_STEP};
 use super::state::Track;
 use super::strips::{Whole, centroid_sigma};
 use crate::sense::centroid::tile::LoadedTile;
@@ -121,6 +124,8 @@ pub(super) enum Second {
     Shift(DVec2),
     /// The tiles' loads lie too far apart along an axis.
     Apart(Spread),
+    /// Two soles explain the loads.
+    Pair(Pair),
 }
 
 impl Explanation {
@@ -128,9 +133,8 @@ impl Explanation {
         Self { log_odds: ACCOMPANIED }
     }
 
-    /// Updates the odds with the present loads of the track's tiles, at the usual distance `side` from each other;
-    /// `alone`
-    /// returns whether no other foot is within a stride.
+    /// Updates the odds with the present loads of the track's tiles, at the usual distance `side` from each other.
+    /// `alone`: whether it carries a person, with no other foot within a stride.
     ///
     /// log odds += w (evidence − log odds). Returns the place of the second foot once it justifies a track.
     pub(super) fn update(
@@ -139,20 +143,28 @@ impl Explanation {
         seen: &Whole,
         list: &[LoadedTile],
         side: f64,
-        alone: impl FnOnce() -> bool,
+        alone: bool,
         elapsed: &Elapsed,
     ) -> Option<Second> {
         // A light contact far from all others is a tapping foot; a person stands on one foot or on two.
         let lone = !foot.accompanied && (foot.bears() || seen.force > foot.body_n);
         let prior = if lone { LONE } else { ACCOMPANIED };
         let tiles = foot.tiles.as_slice().iter().map(|&position| &list[position as usize]);
-        let (mut evidence, mut spread) = (prior, Spread::default());
+        let (mut evidence, mut spread, mut spread_evidence) = (prior, Spread::default(), 0.0);
         if seen.force > SPREAD_N && foot.tiles.len() > 1 {
             spread = Spread::of(tiles.clone(), seen.middle);
-            evidence += spread.evidence();
+            spread_evidence = spread.evidence();
+            evidence += spread_evidence;
         }
         let mut shift = DVec2::ZERO;
-        if foot.anchored_s > 0.0 && seen.force > foot.body_n && alone() {
+        let mut pair = None;
+        if foot.anchored_s > 0.0 && alone {
+            pair = foot.fitted.pair();
+            if let Some(pair) = &pair {
+                let least = if foot.anchored_s > STANDS_S { ONE_SOLE } else { ONE_STEP };
+                let soles = (pair.log_odds - least).clamp(-MOST, MOST);
+                evidence += soles.max(spread_evidence) - spread_evidence;
+            }
             if foot.anchored_s > STANDS_S {
                 let (standing, after_s) =
                     if foot.accompanied { (STOPPED, STOPPED_S) } else { (STANDING, STANDING_S) };
@@ -169,9 +181,12 @@ impl Explanation {
         if self.log_odds < BIRTH || evidence < BIRTH {
             return None;
         }
-        if spread.evidence_along() > -prior + BIRTH.min(4.0) {
+        let shifted = shift.length() > 3.0 * SWAY_M;
+        if let Some(pair) = pair.filter(|pair| pair.is_placed() && !shifted) {
+            Some(Second::Pair(pair))
+        } else if spread.evidence_along() > -prior + BIRTH.min(4.0) {
             Some(Second::Apart(spread))
-        } else if shift.length() > 3.0 * SWAY_M {
+        } else if shifted {
             Some(Second::Shift(shift))
         } else {
             None

@@ -11,7 +11,7 @@ use super::model::{observe, predict};
 use super::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, THROWN_M};
 use super::state::{EAST, NORTH, STATES, Track};
 use super::strips::{Strips, centroid_sigma};
-use super::{Cells, Tracker, rivals, touchdown};
+use super::{Cells, Tracker, rivals, stance, touchdown};
 use crate::parallel;
 use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::contact::ContactId;
@@ -70,6 +70,9 @@ impl Tracker {
             parallel::for_each_batch(&mut batches, feet, |_, (estimator, groups)| {
                 for group in groups.iter_mut() {
                     group.iter_mut().for_each(|foot| foot.join(false));
+                    if stance::place(group, tiles, cells, elapsed) {
+                        continue;
+                    }
                     if !place_touchdown(group, tiles.list(), cells) {
                         estimator.estimate(group, links, tiles.list(), cells, elapsed);
                     }

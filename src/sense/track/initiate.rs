@@ -2,7 +2,7 @@
 
 use super::params::associate::NOISE_ARM_M;
 use super::params::initiate::{ADDED_N, APART_GUESS_M, APART_M, GUESSED_M, SLIDES_M_S, STANCE_M};
-use super::params::state::LANDS_S;
+use super::params::state::{FLAT_S, LANDS_S};
 use super::params::stillness::{SHARED_SPEED_M_S, STANDS_S};
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -10,6 +10,10 @@ use smallvec::SmallVec;
 use super::elapsed::Elapsed;
 use super::explanation::Second;
 use super::neighbours::Near;
+use super::outline::FanExtents;
+use super::pair::{Fitted, Pair};
+use super::sole::LoadsAround;
+use super::stance::Stance;
 use super::state::{FORCE, Track};
 use super::strips::Whole;
 use super::touchdown::Touchdown;
@@ -26,8 +30,8 @@ pub(super) struct CandidateTrack {
     deviation: f64,
     /// Positions in the list of loaded tiles of the tiles on which it was noticed.
     tiles: SmallVec<[u32; 4]>,
-    /// Force and place that remain for the track from which it is split, if both are new.
-    keeps: Option<(f64, DVec2)>,
+    /// The foot that remains for the track from which it is split, if both are new.
+    keeps: Option<KeptFoot>,
 }
 
 impl CandidateTrack {
@@ -37,13 +41,22 @@ impl CandidateTrack {
     }
 }
 
+/// One of two feet that have landed together.
+#[derive(Clone, Copy, Debug)]
+struct KeptFoot {
+    force: f64,
+    place: DVec2,
+    deviation: f64,
+    /// Whether two soles were fitted to the loads: nothing that the track has learnt from both feet holds for one.
+    is_fitted: bool,
+}
+
 impl Tracker {
     /// Starts new tracks on tiles that other feet already press.
     pub(super) fn initiate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
-        let list = tiles.list();
         let (near, cells) = (&self.near, &self.cells);
         parallel::for_each(&mut self.tracks, |which, foot| {
-            foot.look_for_second(which, near, list, cells, elapsed);
+            foot.look_for_second(which, near, tiles, cells, elapsed);
         });
         for which in 0..self.tracks.len() {
             let Some(candidate) = self.tracks[which].candidate.take_if(|_| true) else { continue };
@@ -68,7 +81,8 @@ impl Tracker {
                 }
                 continue;
             }
-            if foot.centre().distance(candidate.place) < APART_M {
+            let kept = candidate.keeps.map_or(foot.centre(), |keeps| keeps.place);
+            if kept.distance(candidate.place) < APART_M {
                 continue;
             }
             let stood = foot.anchored_s >= STANDS_S && foot.bears();
@@ -94,12 +108,19 @@ impl Tracker {
                 }
             }
             if !new_track.tiles.is_empty() {
-                if let Some((force, place)) = candidate.keeps {
+                if let Some(keeps) = candidate.keeps {
                     let foot = &mut self.tracks[which];
-                    foot.stand(force, place);
-                    foot.reset_covariance(APART_GUESS_M);
-                    foot.covariance[FORCE][FORCE] = (0.3 * force + 5.0).powi(2);
+                    foot.stand(keeps.force, keeps.place);
+                    foot.reset_covariance(keeps.deviation);
+                    foot.covariance[FORCE][FORCE] = (0.3 * keeps.force + 5.0).powi(2);
                     foot.restart_smoothing();
+                    if keeps.is_fitted {
+                        let (places, deviations) =
+                            ([candidate.place, keeps.place], [candidate.deviation, keeps.deviation]);
+                        new_track.stance = Some(Stance::new(from, places, deviations));
+                        foot.forget_shape();
+                        foot.outline = FanExtents::new(keeps.place);
+                    }
                     for foot in [foot, &mut new_track] {
                         foot.landed_together = true;
                         foot.mean_speed = SHARED_SPEED_M_S;
@@ -121,24 +142,25 @@ impl Track {
         &mut self,
         which: usize,
         near: &Near,
-        list: &[LoadedTile],
+        tiles: &LoadedTiles,
         cells: &Cells,
         elapsed: &Elapsed,
     ) {
         if self.shared {
             return;
         }
+        let list = tiles.list();
         // A sensor whose quality changes moves the tile's reading without any foot.
-        let tiles = self.tiles.as_slice();
-        let quality = tiles.iter().map(|&position| list[position as usize].quality).max();
+        let own = self.tiles.as_slice();
+        let quality = own.iter().map(|&position| list[position as usize].quality).max();
         if quality.is_some_and(|quality| quality != self.quality) {
             // The estimate for a sensor that is lost or returns is blended in gradually.
-            let lasts = tiles.iter().any(|&position| !list[position as usize].is_settled());
+            let lasts = own.iter().any(|&position| !list[position as usize].is_settled());
             self.on_quality_change(quality.unwrap_or_default(), lasts);
             return;
         }
         let alone = || !near.is_beside_any(which);
-        let second = self.second(alone, list, cells.side(), elapsed);
+        let second = self.second(alone, tiles, cells, elapsed);
         let added = if self.age > LANDS_S { self.added(list, cells) } else { None };
         // Taken out in every frame, so an absent candidate needs no write: most feet have none.
         if let Some(candidate) = added.or(second) {
@@ -191,18 +213,36 @@ impl Track {
     fn second(
         &mut self,
         alone: impl FnOnce() -> bool,
-        list: &[LoadedTile],
-        side: f64,
+        tiles: &LoadedTiles,
+        cells: &Cells,
         elapsed: &Elapsed,
     ) -> Option<CandidateTrack> {
+        let list = tiles.list();
         let seen = Whole::of(self.tiles.as_slice().iter().map(|&position| &list[position as usize]));
+        let alone = self.anchored_s > 0.0 && seen.force > self.body_n && alone();
+        // A second foot lands with the first one, or stands beside it; any other one shows when it lands.
+        let lands = !self.accompanied && self.age < FLAT_S;
+        if !alone || !lands && self.anchored_s < STANDS_S {
+            self.fitted = Fitted::default();
+        } else if self.fitted.is_due_after(elapsed.dt) {
+            let loads = LoadsAround::of(seen.middle, &self.tiles, tiles, cells);
+            self.fitted.set(Pair::of(&loads, seen.middle, seen.force));
+        }
         let mut explanation = self.explanation;
-        let second = explanation.update(self, &seen, list, side, alone, elapsed);
+        let second = explanation.update(self, &seen, list, cells.side(), alone, elapsed);
         self.explanation = explanation;
         if self.suppressed_s > 0.0 {
             return None;
         }
-        match second? {
+        let second = match second? {
+            Second::Apart(spread) => {
+                let loads = LoadsAround::of(seen.middle, &self.tiles, tiles, cells);
+                let pair = Pair::of(&loads, seen.middle, seen.force).filter(Pair::is_placed);
+                pair.map_or(Second::Apart(spread), Second::Pair)
+            }
+            other => other,
+        };
+        match second {
             Second::Shift(shift) => Some(CandidateTrack {
                 force: seen.force * shift.length() / STANCE_M,
                 place: self.anchor + shift.normalize() * STANCE_M,
@@ -231,8 +271,29 @@ impl Track {
                     deviation: APART_GUESS_M,
                     ..CandidateTrack::default()
                 };
-                candidate.keeps = Some((sides[1 - new].0, keep));
+                candidate.keeps = Some(KeptFoot {
+                    force: sides[1 - new].0,
+                    place: keep,
+                    deviation: APART_GUESS_M,
+                    is_fitted: false,
+                });
                 Some(candidate)
+            }
+            Second::Pair(pair) => {
+                let away = pair.places.map(|place| place.distance_squared(self.landed));
+                let (keep, new) = if away[0] < away[1] { (0, 1) } else { (1, 0) };
+                Some(CandidateTrack {
+                    force: pair.forces[new],
+                    place: pair.places[new],
+                    deviation: pair.deviations[new],
+                    keeps: Some(KeptFoot {
+                        force: pair.forces[keep],
+                        place: pair.places[keep],
+                        deviation: pair.deviations[keep],
+                        is_fitted: true,
+                    }),
+                    ..CandidateTrack::default()
+                })
             }
         }
     }

@@ -73,7 +73,7 @@ impl Track {
             (self.nis, self.misfit) = (0.0, 0.0);
         }
         self.ambiguous = if self.shared {
-            self.beyond_filter || self.inflated() > AMBIGUOUS_M * AMBIGUOUS_M
+            self.beyond_filter || self.contested_s > 0.0 || self.inflated() > AMBIGUOUS_M * AMBIGUOUS_M
         } else {
             self.explanation.is_open()
         };

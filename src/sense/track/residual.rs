@@ -6,7 +6,7 @@ use super::elapsed::{Elapsed, ShapeFade};
 use super::number_of;
 use super::params::reach::KNOWN;
 use super::params::residual::{KNOWN_S, LEARN_EVERY_S, RESIDUAL_S, TOUCHES_S};
-use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST};
+use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST, UNKNOWN_HALF_M};
 use super::state::{HALF_EAST, HALF_NORTH, Track};
 use super::strips::{Residual, StripAxis, Strips, Whole};
 use crate::sense::centroid::tile::LoadedTile;
@@ -112,6 +112,17 @@ impl Track {
                 let variance = &mut self.covariance[half][half];
                 *variance = variance.min(deviation * deviation);
             }
+        }
+    }
+
+    /// Forgets its shape, which was that of two feet.
+    pub(super) fn forget_shape(&mut self) {
+        (self.alone_at, self.alone_s) = (None, 0.0);
+        self.residuals.clear();
+        self.note_borne();
+        for half in [HALF_EAST, HALF_NORTH] {
+            self.state[half] = HALF_REST;
+            self.covariance[half][half] = UNKNOWN_HALF_M * UNKNOWN_HALF_M;
         }
     }
 

@@ -18,8 +18,8 @@
 use super::params::delete::OWN_M;
 use super::params::reach::AROUND_M;
 use super::params::rivals::{
-    AHEAD, AROUND_STEP_M, EVERY_S, FURTHER, GONE_S, HALVES, LEAST_SHARE, OVER_STEP_M, OVERLAP_M, PAUSE,
-    ROLLED_M, SETTLE_M, SPLIT, STEPS_AROUND, STRAYED_M, TIMES, TOGETHER,
+    AHEAD, AROUND_STEP_M, CONTESTED_S, EVERY_S, FURTHER, GONE_S, HALVES, LEAST_SHARE, OVER_STEP_M, OVERLAP_M,
+    PAUSE, ROLLED_M, SETTLE_M, SPLIT, STEPS_AROUND, STRAYED_M, TIMES, TOGETHER,
 };
 use super::params::state::FLAT_S;
 use super::params::touchdown::SIDE_BY_SIDE_M;
@@ -96,6 +96,13 @@ pub(super) fn compare(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells,
         let again = before.rival.is_some_and(|before| before.is_like(*rival));
         (lead.rival, lead.times) = (Some(*rival), if again { before.times.saturating_add(1) } else { 1 });
     }
+    if let Some((rival, _)) = &best {
+        for (which, foot) in group.iter_mut().enumerate() {
+            if foot.place_under(*rival, which).distance(foot.centre()) > STRAYED_M {
+                foot.contested_s = CONTESTED_S;
+            }
+        }
+    }
     let wins = lead.times >= TIMES;
     group[0].lead = if wins { Lead { pause: PAUSE, ..Lead::default() } } else { lead };
     if let Some((rival, fit)) = best.filter(|_| wins) {
@@ -109,6 +116,15 @@ fn may_have_rivals(group: &Group<'_>) -> bool {
 }
 
 impl Track {
+    /// Its place as foot `which` of its group if `rival` is right.
+    fn place_under(&self, rival: Rival, which: usize) -> DVec2 {
+        match rival {
+            Rival::Moved(moved, place) | Rival::Without(_, moved, place) if moved == which => place,
+            Rival::Together(way) => self.rest_point + way,
+            _ => self.rest_point,
+        }
+    }
+
     /// Distance of its centre of pressure from its rest point (m).
     fn strayed(&self) -> f64 {
         self.centre().distance(self.rest_point)
@@ -174,7 +190,9 @@ impl<'a> Explanations<'a> {
         let home: ArrayVec<Part, MOST_PARTS> =
             self.feet.iter().map(|foot| self.part(foot, foot.rest_point, 0.0)).collect();
         ways(STEPS_AROUND).for_each(|steps| self.move_feet(&home, steps * AROUND_STEP_M, &mut best));
-        for &(low, high) in &self.tiles {
+        // A foot at work beside a standing one rocks and slides by itself.
+        let may_be_further = self.feet.iter().any(|foot| foot.strayed() > STRAYED_M && foot.bears());
+        for &(low, high) in self.tiles.iter().filter(|_| may_be_further) {
             let steps = ((high - low) / OVER_STEP_M).floor();
             for (east, north) in (0..steps.x as i32).flat_map(|x| (0..steps.y as i32).map(move |y| (x, y))) {
                 let place = low + (DVec2::new(east.into(), north.into()) + 0.5) * OVER_STEP_M;
@@ -219,7 +237,7 @@ impl<'a> Explanations<'a> {
     fn add_foot(&self, home: &ArrayVec<Part, MOST_PARTS>, place: DVec2, best: &mut Best) {
         for half in HALVES {
             let mut parts = home.clone();
-            parts.push(self.loads.part(place, DVec2::splat(half), OVER_STEP_M, |_, _| [0.0; 3]));
+            parts.push(self.loads.part(place, DVec2::splat(half), OVER_STEP_M, 0.0, |_, _| [0.0; 3]));
             let Some(fit) = self.loads.fit(&parts) else { continue };
             let force = fit.forces[parts.len() - 1];
             if force > LEAST_SHARE * self.loads.force() {
@@ -265,7 +283,7 @@ impl<'a> Explanations<'a> {
     /// The loads of one newton of `foot` with its centre of pressure at `place`.
     fn part(&self, foot: &Track, place: DVec2, step: f64) -> Part {
         let strength = foot.residual_weight_at(place);
-        self.loads.part(place, foot.half(), step, |axis, number| {
+        self.loads.part(place, foot.half(), step, strength, |axis, number| {
             let residual = foot.residual_at(axis, number, strength);
             [residual.share, residual.moment, residual.cross]
         })
@@ -286,15 +304,11 @@ fn overlap(apart: f64) -> f64 {
 /// Replaces the filter's explanation by `rival`.
 fn adopt(group: &mut Group<'_>, rival: Rival, fit: &Fit, list: &[LoadedTile]) {
     for (which, foot) in group.iter_mut().enumerate() {
-        let place = match rival {
-            Rival::Without(gone, ..) if gone == which => {
-                foot.empty_s = GONE_S;
-                continue;
-            }
-            Rival::Moved(moved, place) | Rival::Without(_, moved, place) if moved == which => place,
-            Rival::Together(way) => foot.rest_point + way,
-            _ => foot.rest_point,
-        };
+        if matches!(rival, Rival::Without(gone, ..) if gone == which) {
+            foot.empty_s = GONE_S;
+            continue;
+        }
+        let place = foot.place_under(rival, which);
         if foot.strayed() > STRAYED_M {
             foot.outline = FanExtents::new(foot.rest_point);
         }

@@ -1,7 +1,7 @@
 //! The state of one foot, and its change over time.
 
 use super::params::explanation::ROLL_M;
-use super::params::state::{BODY_N, BODY_SHARE, CALM_S, HALF_REST, LEAST_BODY_N};
+use super::params::state::{BODY_N, BODY_SHARE, CALM_S, HALF_REST, LEAST_BODY_N, UNKNOWN_HALF_M};
 use super::params::stillness::SWAY_MOST_M;
 use arrayvec::ArrayVec;
 use glam::{DVec2, IVec2};
@@ -11,10 +11,12 @@ use super::elapsed::Elapsed;
 use super::explanation::Explanation;
 use super::initiate::CandidateTrack;
 use super::outline::FanExtents;
+use super::pair::Fitted;
 use super::patch::PatchOnTile;
 use super::reach::NOTHING_BORNE;
 use super::rivals::Lead;
 use super::smoothed::Smoothed;
+use super::stance::Stance;
 use super::strips::Residual;
 use super::touchdown::Touchdown;
 use crate::sense::Quality;
@@ -115,6 +117,12 @@ pub(super) struct Track {
     pub explanation: Explanation,
     /// The rival explanation of its group that is ahead of the filter's, if it is the first of the group.
     pub lead: Lead,
+    /// Time for which it stays ambiguous since a rival with another place for it was ahead (s).
+    pub contested_s: f64,
+    /// The foot with which it landed and stands.
+    pub stance: Option<Stance>,
+    /// Two soles fitted to its loads.
+    pub fitted: Fitted,
     /// A foot that may have landed among its tiles in this frame.
     pub candidate: Option<CandidateTrack>,
 }
@@ -167,11 +175,14 @@ impl Track {
             accompanied: false,
             explanation: Explanation::new(),
             lead: Lead::default(),
+            contested_s: 0.0,
+            stance: None,
+            fitted: Fitted::default(),
             candidate: None,
         };
         foot.reset_covariance(deviation);
         for half in [HALF_EAST, HALF_NORTH] {
-            foot.covariance[half][half] = 0.04_f64.powi(2);
+            foot.covariance[half][half] = UNKNOWN_HALF_M * UNKNOWN_HALF_M;
         }
         foot
     }
@@ -318,6 +329,7 @@ impl Track {
     pub(super) fn predict(&mut self, dt: f64) {
         self.age += dt;
         self.suppressed_s = (self.suppressed_s - dt).max(0.0);
+        self.contested_s = (self.contested_s - dt).max(0.0);
         self.partner_s += dt;
         self.smoothed.centre += self.smoothed.velocity * dt;
         self.smoothed.force = (self.smoothed.force + self.smoothed.force_rate * dt).max(0.0);

@@ -1,6 +1,7 @@
 //! Feet at given places fitted to the loads of columns and rows of tiles, without memory.
 
-use super::params::touchdown::{MISREAD_N, SWAY_M, UNLIKE, UNLIKE_LEAST};
+use super::params::static_fit::{ASIDE, KNOWN, SEAM_M, UNKNOWN};
+use super::params::touchdown::{MISREAD_N, SWAY_M};
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
@@ -13,11 +14,20 @@ pub(super) const MOST_PARTS: usize = 5;
 /// Share of the step of a grid by which a place on it is off, as a standard deviation.
 const OFF_GRID: f64 = 0.3;
 
-/// Shares and moments of one foot on every strip, for one newton of it.
+/// The load of one newton of a foot on one strip.
+#[derive(Clone, Copy, Debug, Default)]
+struct Load {
+    /// Its share, first moment, and moment across.
+    of: [f64; 3],
+    /// Variance of the share.
+    unlike: f64,
+}
+
+/// One foot on every strip.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     pub place: DVec2,
-    on: ArrayVec<[f64; 3], MOST_STRIPS>,
+    on: ArrayVec<Load, MOST_STRIPS>,
     /// Step of the grid on which its place lies (m); 0 for a known place.
     step: f64,
 }
@@ -25,7 +35,7 @@ pub(super) struct Part {
 impl Part {
     /// The same foot without load.
     pub(super) fn absent(mut self) -> Self {
-        self.on.iter_mut().for_each(|on| *on = [0.0; 3]);
+        self.on.iter_mut().for_each(|on| *on = Load::default());
         self
     }
 }
@@ -64,20 +74,28 @@ impl StripLoads {
     }
 
     /// The loads of one newton of a foot with its centre of pressure at `place`, on a grid with this `step`. `residual`
-    /// returns the difference of its shape from the patch with the half widths `half` on a strip.
+    /// returns the difference of its shape from the patch with the half widths `half` on a strip; the shape is known
+    /// with the weight `known`, 0 to 1.
     pub(super) fn part(
         &self,
         place: DVec2,
         half: DVec2,
         step: f64,
+        known: f64,
         residual: impl Fn(StripAxis, i32) -> [f64; 3],
     ) -> Part {
+        let at_seam = KNOWN * KNOWN + (1.0 - known) * UNKNOWN * UNKNOWN;
         let on = self.strips.strips.iter().map(|strip| {
             let axis = strip.axis;
-            let slice = strip.slice(self.pitch, axis.along(place), axis.along(half));
+            let (along, pitch) = (axis.along(place), axis.along(self.pitch));
+            let slice = strip.slice(self.pitch, along, axis.along(half));
             let [share, moment, cross] = residual(axis, strip.number);
             let share = (slice.share + share).clamp(0.0, 1.0);
-            [share, slice.moment + moment, share * axis.across(place - self.strips.middle) + cross]
+            let near = |seam: i32| (-2.0 * ((along - f64::from(seam) * pitch) / SEAM_M).powi(2)).exp();
+            Load {
+                of: [share, slice.moment + moment, share * axis.across(place - self.strips.middle) + cross],
+                unlike: at_seam * (near(strip.number) + near(strip.number + 1)),
+            }
         });
         Part { place, on: on.collect(), step }
     }
@@ -108,17 +126,22 @@ impl StripLoads {
     ) {
         for (at, strip) in self.strips.strips.iter().enumerate() {
             let lever = 0.5 * strip.axis.along(self.pitch);
-            let mut unsure = MISREAD_N * MISREAD_N;
-            let mut swaying = 0.0;
+            let (mut unsure, mut swaying) = (0.0, 0.0);
             for (part, force) in parts.iter().zip(forces) {
-                let share = part.on[at][0];
-                unsure += (UNLIKE * force).powi(2) * (4.0 * share * (1.0 - share) + UNLIKE_LEAST);
-                swaying += (SWAY_M.max(OFF_GRID * part.step) * force * share / lever).powi(2);
+                let load = &part.on[at];
+                unsure += force * force * load.unlike;
+                swaying += (SWAY_M.max(OFF_GRID * part.step) * force * load.of[0]).powi(2);
             }
-            for (row, observed) in [strip.force, strip.moment, strip.cross].into_iter().enumerate() {
+            let misread = MISREAD_N * MISREAD_N;
+            let variances = [
+                misread + unsure,
+                (misread + unsure) * lever * lever + swaying,
+                (misread + ASIDE * ASIDE * unsure) * lever * lever + swaying,
+            ];
+            let observed = [strip.force, strip.moment, strip.cross];
+            for (row, (observed, variance)) in observed.into_iter().zip(variances).enumerate() {
                 let mut coefficients = [0.0; MOST_PARTS];
-                coefficients.iter_mut().zip(parts).for_each(|(to, part)| *to = part.on[at][row]);
-                let variance = if row == 0 { unsure } else { (unsure + swaying) * lever * lever };
+                coefficients.iter_mut().zip(parts).for_each(|(to, part)| *to = part.on[at].of[row]);
                 visit(observed, coefficients, variance + strip.noise[row]);
             }
         }

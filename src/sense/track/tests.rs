@@ -135,6 +135,31 @@ fn two_feet_that_land_together_40_cm_apart_are_two_within_150_ms() {
 }
 
 #[test]
+fn two_feet_that_land_together_on_shared_tiles_are_two_ambiguous_contacts_in_place() {
+    // Apart as in a narrow, a usual and a wide stance, over seams of both axes.
+    for apart in [0.16, 0.2, 0.26] {
+        for heading in HEADINGS {
+            let aside = Vec2::from_angle(heading).perp() * (0.5 * apart);
+            let middle = Vec2::new(0.95, 0.88);
+            let mut floor = Floor::new();
+            for milli in 0..800_u16 {
+                let force = 350.0 * smooth(0.0, 100.0, milli.into());
+                let foot = |side: f32| Sole::new(middle + aside * side, heading, force);
+                floor.feel(&[foot(-1.0), foot(1.0)], 1);
+            }
+            let contacts = floor.sensing.contacts();
+            assert!(contacts.len() == 2 && contacts.iter().all(|contact| contact.ambiguous), "{contacts:?}");
+            for side in [-1.0, 1.0] {
+                let centre = Sole::new(middle + aside * side, heading, 1.0).centre();
+                let away = contacts.iter().map(|contact| contact.centroid.distance(centre));
+                let nearest = away.fold(f32::INFINITY, f32::min);
+                assert!(nearest < 0.06, "{apart} m at {heading}: {contacts:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn two_feet_that_stand_as_one_contact_are_doubted() {
     for heading in HEADINGS {
         let aside = Vec2::from_angle(heading).perp() * 0.08;

@@ -1,0 +1,137 @@
+//! One sole or two, fitted to the loads of one instant.
+//!
+//! Two feet that have landed together are one contact until their places show. All pairs of soles side by side with
+//! the contact's centre of pressure between them are tried, and all single soles at that point; the mean likelihoods of
+//! both give the odds, and the likely pairs the places.
+
+use super::params::pair::{
+    APART_M, FIRST_S, FORCE_SHARES, HEADINGS, LATER, LIKELIHOODS, ON_HEEL, ON_HEEL_ALONE, ONE_SOLE, PLACED_M,
+    STEP_M,
+};
+use arrayvec::ArrayVec;
+use glam::DVec2;
+
+use super::sole::{LoadsAround, Sole};
+
+/// Two feet that explain the loads of one contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Pair {
+    /// Log odds of two soles against one, with equal prior odds.
+    pub log_odds: f64,
+    pub places: [DVec2; 2],
+    /// Force (N) of each.
+    pub forces: [f64; 2],
+    /// Standard deviation of the place of each (m).
+    pub deviations: [f64; 2],
+}
+
+/// The pair fitted to the loads of a contact that may be two feet, again and again while it may be.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Fitted {
+    pair: Option<Pair>,
+    /// Time for which it may have been two feet, and at the latest fit (s).
+    open_s: f64,
+    fitted_s: f64,
+}
+
+impl Fitted {
+    /// The latest pair.
+    pub(super) fn pair(&self) -> Option<Pair> {
+        self.pair
+    }
+
+    /// Counts `dt` seconds, and returns whether it is time to fit again.
+    pub(super) fn is_due_after(&mut self, dt: f64) -> bool {
+        self.open_s += dt;
+        self.open_s >= (LATER * self.fitted_s).max(FIRST_S)
+    }
+
+    /// Sets the pair fitted to the present loads.
+    pub(super) fn set(&mut self, pair: Option<Pair>) {
+        (self.pair, self.fitted_s) = (pair, self.open_s);
+    }
+}
+
+/// Number of pairs tried.
+const PAIRS: usize = HEADINGS * ON_HEEL.len() * APART_M.len() * FORCE_SHARES.len();
+
+impl Pair {
+    /// Whether two soles are likelier than one by more than one may reach by its own shape, and both have a place.
+    pub(super) fn is_placed(&self) -> bool {
+        self.log_odds > ONE_SOLE && self.deviations.iter().all(|one| *one < PLACED_M)
+    }
+
+    /// The likeliest pair whose common centre of pressure is `centre`, of `force` newtons together. `None` if no pair
+    /// explains the loads at all.
+    pub(super) fn of(loads: &LoadsAround, centre: DVec2, force: f64) -> Option<Self> {
+        let pairs: ArrayVec<f64, PAIRS> =
+            (0..PAIRS).map(|number| loads.log_likelihood(&pair(number, centre, force))).collect();
+        let alone = (0..2 * HEADINGS * ON_HEEL_ALONE.len()).map(|number| {
+            let (heading, heel) = (number % (2 * HEADINGS), number / (2 * HEADINGS));
+            let sole = Sole { centre, heading: heading_of(heading), on_heel: ON_HEEL_ALONE[heel], force };
+            loads.log_likelihood(&[sole])
+        });
+        let alone: ArrayVec<f64, { 2 * HEADINGS * ON_HEEL_ALONE.len() }> = alone.collect();
+        let (likeliest, &most) = pairs.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+        if !most.is_finite() {
+            return None;
+        }
+        let best = pair(likeliest, centre, force);
+        let (mut sum, mut places, mut forces, mut squares) = (0.0, [DVec2::ZERO; 2], [0.0; 2], [0.0; 2]);
+        for (number, likelihood) in pairs.iter().enumerate() {
+            let weight = (likelihood - most).exp();
+            if weight < LIKELIHOODS {
+                continue;
+            }
+            let feet = matched(pair(number, centre, force), &best);
+            sum += weight;
+            for (which, foot) in feet.iter().enumerate() {
+                places[which] += foot.centre * weight;
+                forces[which] += foot.force * weight;
+                squares[which] += foot.centre.distance_squared(centre) * weight;
+            }
+        }
+        for which in 0..2 {
+            places[which] /= sum;
+            forces[which] /= sum;
+            let spread = squares[which] / sum - places[which].distance_squared(centre);
+            squares[which] = (0.5 * spread.max(0.0) + STEP_M * STEP_M).sqrt();
+        }
+        let log_odds = log_mean_exp(&pairs) - log_mean_exp(&alone);
+        Some(Self { log_odds, places, forces, deviations: squares })
+    }
+}
+
+/// Pair number `number` of all that are tried.
+fn pair(number: usize, centre: DVec2, force: f64) -> [Sole; 2] {
+    let (heading, number) = (heading_of(number % HEADINGS), number / HEADINGS);
+    let (on_heel, number) = (ON_HEEL[number % ON_HEEL.len()], number / ON_HEEL.len());
+    let (apart, number) = (APART_M[number % APART_M.len()], number / APART_M.len());
+    let share = FORCE_SHARES[number % FORCE_SHARES.len()];
+    let aside = heading.perp() * apart;
+    let sole = |centre, force| Sole { centre, heading, on_heel, force };
+    [sole(centre - aside * share, force * (1.0 - share)), sole(centre + aside * (1.0 - share), force * share)]
+}
+
+fn heading_of(number: usize) -> DVec2 {
+    DVec2::from_angle(number as f64 * std::f64::consts::PI / HEADINGS as f64)
+}
+
+/// The feet in the order of those of `best`.
+fn matched(feet: [Sole; 2], best: &[Sole; 2]) -> [Sole; 2] {
+    let [first, second] = feet;
+    let away = |a: &Sole, b: &Sole| a.centre.distance_squared(b.centre);
+    let crossed = away(&first, &best[1]) + away(&second, &best[0]);
+    if away(&first, &best[0]) + away(&second, &best[1]) <= crossed {
+        [first, second]
+    } else {
+        [second, first]
+    }
+}
+
+/// Logarithm of the mean of the exponentials.
+fn log_mean_exp(logarithms: &[f64]) -> f64 {
+    let most = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = logarithms.iter().map(|one| (one - most).exp()).sum();
+    most + (sum / logarithms.len() as f64).ln()
+}
