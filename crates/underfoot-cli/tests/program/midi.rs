@@ -30,16 +30,6 @@ struct JackStage {
 impl JackStage {
     /// A server of its own; `None`, with the reason printed, where JACK or the listener is missing.
     fn open() -> Option<Self> {
-        Self::open_with(&[])
-    }
-
-    /// A server that waits for its clients in each cycle, so that a busy machine loses no message between them.
-    fn open_patient() -> Option<Self> {
-        Self::open_with(&["-S", "-t", "20000"])
-    }
-
-    /// A server with these options.
-    fn open_with(options: &[&str]) -> Option<Self> {
         if !cfg!(feature = "midi-jack") {
             println!("not run: the program is built without the feature midi-jack");
             return None;
@@ -53,7 +43,7 @@ impl JackStage {
             }
         }
         let name = format!("underfoot_{}", std::process::id());
-        let server = server(&name, options);
+        let server = server(&name);
         let mut stage =
             Self { name, server, listener: None, heard: None, all: Vec::new(), down: BTreeSet::new() };
         stage.listen();
@@ -145,11 +135,9 @@ impl Drop for JackStage {
 }
 
 /// A server with cycles of 5 ms.
-fn server(name: &str, options: &[&str]) -> Child {
+fn server(name: &str) -> Child {
     Command::new("jackd")
-        .args(["-n", name, "-r"])
-        .args(options)
-        .args(["-d", "dummy", "-r", "48000", "-p", "256", "-C", "0", "-P", "0"])
+        .args(["-n", name, "-r", "-d", "dummy", "-r", "48000", "-p", "256", "-C", "0", "-P", "0"])
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -221,7 +209,7 @@ fn a_connection_that_another_program_made_outlives_the_guardian() {
 
 #[test]
 fn a_foot_on_free_floor_is_a_voice_and_a_slider_is_a_controller() {
-    let Some(mut stage) = JackStage::open_patient() else { return };
+    let Some(mut stage) = JackStage::open() else { return };
     let targets = synth();
     let text = format!(
         r#"Layout(
@@ -278,7 +266,7 @@ fn a_jack_server_that_ends_and_comes_back_gets_nothing_old() {
     stage.down.clear();
     thread::sleep(Duration::from_millis(500));
     drop(boards);
-    stage.server = server(&stage.name, &[]);
+    stage.server = server(&stage.name);
     stage.all.clear();
     stage.listen();
     until("the port is there again", || {
