@@ -9,8 +9,8 @@ use std::thread;
 use std::time::Duration;
 
 use crate::holds::client::Client;
-use crate::holds::site::{Boards, Site};
-use crate::targets::{NO_DESK, Observer, comes_up_soon, guardian, kill, page, twenty_rounds, until};
+use crate::holds::site::Site;
+use crate::targets::{NO_DESK, Observer, comes_up_soon, guardian, holding, kill, page, twenty_rounds, until};
 
 /// The client name of the listener.
 const LISTENER: &str = "midi_listener";
@@ -195,8 +195,7 @@ fn a_connection_that_another_program_made_outlives_the_guardian() {
         let all = stage.connections();
         all.lines().skip_while(|line| *line != port).nth(1).is_some_and(|line| line.trim() == input)
     };
-    let boards = Boards::start(&site, run.address);
-    until("the note goes down", || stage.is_down());
+    let boards = holding(&site, run.address, || stage.is_down());
     // The guardian looks at its connections five times a second. The server's own port connects when it is needed: until
     // then, a server that stands still would keep the receiver waiting.
     thread::sleep(Duration::from_millis(400));
@@ -228,8 +227,7 @@ fn a_foot_on_free_floor_is_a_voice_and_a_slider_is_a_controller() {
     let site = stage.site(&text);
     let client = Client::new();
     let run = site.run(&client, &[]);
-    let boards = Boards::start(&site, run.address);
-    until("the foot sounds", || stage.is_down());
+    let boards = holding(&site, run.address, || stage.is_down());
     let has = |stage: &mut JackStage, status: u8, number: Option<u8>| {
         stage.hear();
         let is_it = |message: &Vec<u8>| {
@@ -255,8 +253,7 @@ fn a_jack_server_that_ends_and_comes_back_gets_nothing_old() {
     let site = stage.site(&page(&synth(), HOLD));
     let client = Client::new();
     let run = site.run(&client, &[]);
-    let boards = Boards::start(&site, run.address);
-    until("the note goes down", || stage.is_down());
+    let boards = holding(&site, run.address, || stage.is_down());
     let _ = stage.server.kill();
     let _ = stage.server.wait();
     if let Some(mut listener) = stage.listener.take() {

@@ -1,6 +1,6 @@
 //! A key that goes down comes up after any failure: messages of a held control, seen by an observer outside of the program.
 
-use std::net::UdpSocket;
+use std::net::{SocketAddr, UdpSocket};
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -19,6 +19,9 @@ pub const SOON: Duration = Duration::from_millis(150);
 
 /// Number of attempts on a machine that may be busy.
 const TRIES: usize = 6;
+
+/// Time within which the feet of new boards press on a machine that is not too busy.
+const PRESSED: Duration = Duration::from_secs(5);
 
 /// Time-out for an event that must happen.
 const AT_LAST: Duration = Duration::from_secs(30);
@@ -184,12 +187,27 @@ pub const ENDS: [End; 9] = [
     ("frozen values", |_, boards| boards.suffer(BoardFault::Frozen)),
 ];
 
+/// Boards whose feet hold what `is_down` sees. A machine that stands still for a moment at their landing takes the press:
+/// then they land again.
+pub fn holding(site: &Site, address: SocketAddr, mut is_down: impl FnMut() -> bool) -> Boards {
+    for _ in 0..TRIES {
+        let boards = Boards::start(site, address);
+        let begun = Instant::now();
+        while begun.elapsed() < PRESSED {
+            if is_down() {
+                return boards;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+    panic!("it never goes down");
+}
+
 /// Holds the pedal, does `end`, and returns the time until the observer sees it up.
 pub fn held_for(site: &Site, observer: &mut impl Observer, end: fn(&Run, &Boards)) -> Duration {
     let client = Client::new();
     let run = site.run(&client, &[]);
-    let boards = Boards::start(site, run.address);
-    until("the key goes down", || observer.is_down());
+    let boards = holding(site, run.address, || observer.is_down());
     // The guardian is in the middle of its work.
     std::thread::sleep(Duration::from_millis(100));
     assert!(observer.is_down(), "a foot that stays holds it");
@@ -269,8 +287,7 @@ fn a_guardian_that_dies_has_a_successor_of_the_same_version_after_an_update() {
     let file = site.copy_program().to_owned();
     let client = Client::new();
     let run = site.run(&client, &[]);
-    let boards = Boards::start(&site, run.address);
-    until("the key goes down", || desk.is_down());
+    let boards = holding(&site, run.address, || desk.is_down());
     std::fs::remove_file(&file).unwrap();
     // The new version knows no guardian.
     std::fs::write(&file, "#!/bin/sh\nexit 1\n").unwrap();
