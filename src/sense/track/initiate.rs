@@ -235,7 +235,8 @@ impl Track {
             return None;
         }
         let second = match second? {
-            Second::Apart(spread) => {
+            // One that has stood by itself keeps its place.
+            Second::Apart(spread) if lands => {
                 let loads = LoadsAround::of(seen.middle, &self.tiles, tiles, cells);
                 let pair = Pair::of(&loads, seen.middle, seen.force).filter(Pair::is_placed);
                 pair.map_or(Second::Apart(spread), Second::Pair)

@@ -4,6 +4,7 @@
 //! Their places are those of the likeliest pair of soles ([`pair`](super::pair)). Between two fits, the common centre
 //! of pressure divides the load along the line between the feet, and a movement across that line moves both.
 
+use super::params::rivals::CONTESTED_S;
 use super::params::stance::{ACROSS_M, FIRST_S, LATER, LEAST_SHARE};
 use glam::DVec2;
 
@@ -89,6 +90,8 @@ pub(super) fn place(group: &mut [&mut Track], tiles: &LoadedTiles, cells: &Cells
         foot.reset_covariance(stance.deviations[which]);
         foot.covariance[FORCE][FORCE] = (0.2 * force + 5.0).powi(2);
         (foot.nis, foot.misfit) = (0.0, 0.0);
+        // Another division may explain the loads as well: no tile has shown either foot.
+        foot.contested_s = CONTESTED_S;
     }
     foot.stance = Some(stance);
     true

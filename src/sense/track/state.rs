@@ -117,7 +117,7 @@ pub(super) struct Track {
     pub explanation: Explanation,
     /// The rival explanation of its group that is ahead of the filter's, if it is the first of the group.
     pub lead: Lead,
-    /// Time for which it stays ambiguous since a rival with another place for it was ahead (s).
+    /// Time for which it stays ambiguous since another explanation of its loads was likely (s).
     pub contested_s: f64,
     /// The foot with which it landed and stands.
     pub stance: Option<Stance>,
