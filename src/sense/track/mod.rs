@@ -11,7 +11,7 @@
 //! 3. **Estimate**: Eq. 4 measures a track that is alone. An extended Kalman filter ([`groups`], [`joint`],
 //!    [`model`]) estimates tracks that share tiles; it predicts the force and both moments of each column and row of
 //!    tiles ([`strips`]). A foot put down beside a standing one is placed by the likelihood of each distance
-//!    ([`touchdown`]). Where a foot strays, rival explanations compete with the filter's ([`rivals`]).
+//!    ([`touchdown`]).
 //! 4. **Delete or rest** ([`delete`], [`dormant`]): a foot whose place is proven empty is deleted. A foot that
 //!    carries so little that the other one explains all of the load stays as an ambiguous contact with its identity
 //!    until its load returns or it is proven to have left.
@@ -36,13 +36,11 @@ mod params;
 mod patch;
 mod reach;
 mod residual;
-mod rivals;
 mod sharing;
 mod smoothed;
 mod sole;
 mod stance;
 mod state;
-mod static_fit;
 mod stillness;
 mod strips;
 #[cfg(test)]
