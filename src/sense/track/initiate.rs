@@ -213,9 +213,9 @@ impl Track {
         let list = tiles.list();
         let seen = Whole::of(self.tiles.as_slice().iter().map(|&position| &list[position as usize]));
         let alone = self.anchored_s > 0.0 && seen.force > self.body_n && alone();
-        // A second foot lands with the first one, or stands beside it; any other one shows when it lands.
+        // A foot that has had another one near it is one foot.
         let lands = !self.accompanied && self.age < FLAT_S;
-        if !alone || !lands && self.anchored_s < STANDS_S {
+        if !alone || self.accompanied || !lands && self.anchored_s < STANDS_S {
             self.fitted = Fitted::default();
         } else if self.fitted.is_due_after(elapsed.dt) {
             let loads = LoadsAround::of(seen.middle, &self.tiles, tiles, cells);
