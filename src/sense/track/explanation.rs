@@ -5,7 +5,7 @@
 //!
 //! - **Spread.** The covariance of the tile loads about their common centroid is a lower bound of that of the
 //!   pressure. One foot is long and narrow; two feet are not.
-//! - **Soles.** While it stands, one sole or two are fitted to its loads ([`pair`](super::pair)).
+//! - **Soles.** While a contact lands or stands, with no other foot so far, one sole or two are fitted to its loads ([`pair`](super::pair)).
 //! - **Standing.** A walking step never rests. A single contact that carries a person for longer, with no other foot
 //!   near, is both feet.
 //! - **Shift.** In standing, the centre of pressure of a single foot sways by about a centimetre. It moves farther

@@ -11,7 +11,8 @@
 //! 3. **Estimate**: Eq. 4 measures a track that is alone. An extended Kalman filter ([`groups`], [`joint`],
 //!    [`model`]) estimates tracks that share tiles; it predicts the force and both moments of each column and row of
 //!    tiles ([`strips`]). A foot put down beside a standing one is placed by the likelihood of each distance
-//!    ([`touchdown`]).
+//!    ([`touchdown`]). Two feet that have landed together stand where two soles fit best ([`sole`], [`pair`],
+//!    [`stance`]).
 //! 4. **Delete or rest** ([`delete`], [`dormant`]): a foot whose place is proven empty is deleted. A foot that
 //!    carries so little that the other one explains all of the load stays as an ambiguous contact with its identity
 //!    until its load returns or it is proven to have left.
