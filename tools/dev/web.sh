@@ -29,8 +29,9 @@ install_web_tools() {
     fi
 }
 
-# The folder of the compressed page.
-packed_web() { echo "$(realpath "${CARGO_TARGET_DIR:-target}")/web-packed"; }
+# The folder of the page, and that of the compressed page. Pages for tests lie apart from those that `./dev run` builds in.
+web_folder() { echo "${CARGO_TARGET_DIR:-target}/${page_of_tests:+tests/}web"; }
+packed_web() { echo "$(realpath "${CARGO_TARGET_DIR:-target}")/${page_of_tests:+tests/}web-packed"; }
 
 # Compresses the files of the page for programs that serve it with a floor: the feature web-edition of underfoot-cli takes
 # them in. `served.js` is the program's own.
@@ -45,14 +46,19 @@ pack_web() {
     cat "$packed"/*.gz | sha256sum | cut -c 1-16 >"$packed/version"
 }
 
-# Makes the folders target/web and target/web-packed.
+# Makes the folders target/web and target/web-packed. With `page_of_tests`, those for tests: without the minutes that the
+# last tenths of its size take.
 build_web() {
-    local target=${CARGO_TARGET_DIR:-target}
-    local made=$target/web bindgen built optimiser=crates/underfoot-web/node_modules/.bin/wasm-opt
+    local target=${CARGO_TARGET_DIR:-target} bindgen built optimiser=crates/underfoot-web/node_modules/.bin/wasm-opt
+    local made; made=$(web_folder)
+    if [ -n "${page_of_tests:-}" ]; then
+        local -x CARGO_PROFILE_PAGE_LTO=off CARGO_PROFILE_PAGE_CODEGEN_UNITS=16 CARGO_PROFILE_PAGE_OPT_LEVEL=1
+    fi
     install_web_tools
     CARGO_ENCODED_RUSTFLAGS=$(page_flags) step cargo rustc --locked --profile page --target wasm32-unknown-unknown -p underfoot-web --lib --crate-type cdylib
     built=$target/wasm32-unknown-unknown/page/underfoot_web.wasm
     rm -rf "$made"
+    mkdir -p "$(dirname "$made")"
     local flags=(--target web --no-typescript --remove-producers-section --out-name underfoot --out-dir "$made")
     if [ -x "$optimiser" ]; then
         step "$bindgen" "${flags[@]}" "$built"
