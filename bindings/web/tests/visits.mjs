@@ -68,7 +68,7 @@ await script(async (results) => {
   const simulated = (link) => run("session", link, "--json").trim().split("\n").map((line) => JSON.parse(line)).filter(isShared);
 
   /** Plays the visit to the end in one browser; what happens there is what happens in the program. Returns its events. */
-  async function visit({ browser }, { layout, link, expected }) {
+  async function playVisit({ browser }, { layout, link, expected }) {
     const begun = performance.now();
     const edition = await open(browser, link);
     const lines = await played(edition);
@@ -87,10 +87,10 @@ await script(async (results) => {
   });
   // The first one in both browsers, and each of the others in the browser that is free.
   const both = visits.shift();
-  const [one, other] = await Promise.all(visitors.map((visitor) => visit(visitor, both)));
+  const [one, other] = await Promise.all(visitors.map((visitor) => playVisit(visitor, both)));
   assert.deepEqual(one, other, `${both.layout}: two browsers`);
   await Promise.all(visitors.map(async (visitor) => {
-    for (let next = visits.shift(); next !== undefined; next = visits.shift()) await visit(visitor, next);
+    for (let next = visits.shift(); next !== undefined; next = visits.shift()) await playVisit(visitor, next);
   }));
 
   // Feet of a mouse, recorded in one browser and seen in another one.
