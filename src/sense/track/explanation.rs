@@ -159,7 +159,7 @@ impl Explanation {
         let mut shift = DVec2::ZERO;
         let mut pair = None;
         if foot.anchored_s > 0.0 && alone {
-            pair = foot.fitted.pair();
+            pair = foot.fitted.pair;
             if let Some(pair) = &pair {
                 let least = if foot.anchored_s > STANDS_S { ONE_SOLE } else { ONE_STEP };
                 let soles = (pair.log_odds - least).clamp(-MOST, MOST);

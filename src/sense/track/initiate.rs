@@ -217,9 +217,9 @@ impl Track {
         let lands = !self.accompanied && self.age < FLAT_S;
         if !alone || self.accompanied || !lands && self.anchored_s < STANDS_S {
             self.fitted = Fitted::default();
-        } else if self.fitted.is_due_after(elapsed.dt) {
+        } else if self.fitted.refits.is_due_after(elapsed.dt) {
             let loads = LoadsAround::of(seen.middle, &self.tiles, tiles, cells);
-            self.fitted.set(Pair::of(&loads, seen.middle, seen.force));
+            self.fitted.pair = Pair::of(&loads, seen.middle, seen.force);
         }
         let mut explanation = self.explanation;
         let second = explanation.update(self, &seen, list, cells.side(), alone, elapsed);

@@ -36,6 +36,7 @@ mod pair;
 mod params;
 mod patch;
 mod reach;
+mod refits;
 mod residual;
 mod sharing;
 mod smoothed;

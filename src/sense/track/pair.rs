@@ -5,12 +5,12 @@
 //! both give the odds, and the likely pairs the places.
 
 use super::params::pair::{
-    APART_M, FIRST_S, FORCE_SHARES, HEADINGS, LATER, LIKELIHOODS, ON_HEEL, ON_HEEL_ALONE, ONE_SOLE, PLACED_M,
-    STEP_M,
+    APART_M, FIRST_S, FORCE_SHARES, HEADINGS, LIKELIHOODS, ON_HEEL, ON_HEEL_ALONE, ONE_SOLE, PLACED_M, STEP_M,
 };
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
+use super::refits::Refits;
 use super::sole::{LoadsAround, Sole};
 
 /// Two feet that explain the loads of one contact.
@@ -26,34 +26,24 @@ pub(super) struct Pair {
 }
 
 /// The pair fitted to the loads of a contact that may be two feet, again and again while it may be.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Fitted {
-    pair: Option<Pair>,
-    /// Time for which it may have been two feet, and at the latest fit (s).
-    open_s: f64,
-    fitted_s: f64,
-}
-
-impl Fitted {
     /// The latest pair.
-    pub(super) fn pair(&self) -> Option<Pair> {
-        self.pair
-    }
+    pub pair: Option<Pair>,
+    /// Counts the time for which it may have been two feet.
+    pub refits: Refits,
+}
 
-    /// Counts `dt` seconds, and returns whether it is time to fit again.
-    pub(super) fn is_due_after(&mut self, dt: f64) -> bool {
-        self.open_s += dt;
-        self.open_s >= (LATER * self.fitted_s).max(FIRST_S)
-    }
-
-    /// Sets the pair fitted to the present loads.
-    pub(super) fn set(&mut self, pair: Option<Pair>) {
-        (self.pair, self.fitted_s) = (pair, self.open_s);
+impl Default for Fitted {
+    fn default() -> Self {
+        Self { pair: None, refits: Refits::first_after(FIRST_S) }
     }
 }
 
-/// Number of pairs tried.
+/// Number of pairs tried, and of single soles.
 const PAIRS: usize = HEADINGS * ON_HEEL.len() * APART_M.len() * FORCE_SHARES.len();
+
+const ALONE: usize = 2 * HEADINGS * ON_HEEL_ALONE.len();
 
 impl Pair {
     /// Whether two soles are likelier than one by more than one may reach by its own shape, and both have a place.
@@ -66,39 +56,39 @@ impl Pair {
     pub(super) fn of(loads: &LoadsAround, centre: DVec2, force: f64) -> Option<Self> {
         let pairs: ArrayVec<f64, PAIRS> =
             (0..PAIRS).map(|number| loads.log_likelihood(&pair(number, centre, force))).collect();
-        let alone = (0..2 * HEADINGS * ON_HEEL_ALONE.len()).map(|number| {
-            let (heading, heel) = (number % (2 * HEADINGS), number / (2 * HEADINGS));
-            let sole = Sole { centre, heading: heading_of(heading), on_heel: ON_HEEL_ALONE[heel], force };
-            loads.log_likelihood(&[sole])
-        });
-        let alone: ArrayVec<f64, { 2 * HEADINGS * ON_HEEL_ALONE.len() }> = alone.collect();
+        let alone: ArrayVec<f64, ALONE> =
+            (0..ALONE).map(|number| loads.log_likelihood(&[sole(number, centre, force)])).collect();
         let (likeliest, &most) = pairs.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
         if !most.is_finite() {
             return None;
         }
         let best = pair(likeliest, centre, force);
-        let (mut sum, mut places, mut forces, mut squares) = (0.0, [DVec2::ZERO; 2], [0.0; 2], [0.0; 2]);
-        for (number, likelihood) in pairs.iter().enumerate() {
-            let weight = (likelihood - most).exp();
-            if weight < LIKELIHOODS {
-                continue;
-            }
-            let feet = matched(pair(number, centre, force), &best);
+        let weights = pairs.iter().map(|likelihood| (likelihood - most).exp()).enumerate();
+        let likely = weights.filter(|&(_, weight)| weight >= LIKELIHOODS);
+        let feet = likely.map(|(number, weight)| (matched(pair(number, centre, force), &best), weight));
+        let log_odds = log_mean_exp(&pairs) - log_mean_exp(&alone);
+        Some(Self { log_odds, ..Self::mean_of(feet, centre) })
+    }
+
+    /// The weighted mean of pairs about `centre`.
+    fn mean_of(pairs: impl Iterator<Item = ([Sole; 2], f64)>, centre: DVec2) -> Self {
+        let mut mean = Self::default();
+        let (mut sum, mut squares) = (0.0, [0.0; 2]);
+        for (feet, weight) in pairs {
             sum += weight;
             for (which, foot) in feet.iter().enumerate() {
-                places[which] += foot.centre * weight;
-                forces[which] += foot.force * weight;
+                mean.places[which] += foot.centre * weight;
+                mean.forces[which] += foot.force * weight;
                 squares[which] += foot.centre.distance_squared(centre) * weight;
             }
         }
         for which in 0..2 {
-            places[which] /= sum;
-            forces[which] /= sum;
-            let spread = squares[which] / sum - places[which].distance_squared(centre);
-            squares[which] = (0.5 * spread.max(0.0) + STEP_M * STEP_M).sqrt();
+            mean.places[which] /= sum;
+            mean.forces[which] /= sum;
+            let spread = squares[which] / sum - mean.places[which].distance_squared(centre);
+            mean.deviations[which] = (0.5 * spread.max(0.0) + STEP_M * STEP_M).sqrt();
         }
-        let log_odds = log_mean_exp(&pairs) - log_mean_exp(&alone);
-        Some(Self { log_odds, places, forces, deviations: squares })
+        mean
     }
 }
 
@@ -111,6 +101,12 @@ fn pair(number: usize, centre: DVec2, force: f64) -> [Sole; 2] {
     let aside = heading.perp() * apart;
     let sole = |centre, force| Sole { centre, heading, on_heel, force };
     [sole(centre - aside * share, force * (1.0 - share)), sole(centre + aside * (1.0 - share), force * share)]
+}
+
+/// Single sole number `number` of all that are tried.
+fn sole(number: usize, centre: DVec2, force: f64) -> Sole {
+    let (heading, heel) = (number % (2 * HEADINGS), number / (2 * HEADINGS));
+    Sole { centre, heading: heading_of(heading), on_heel: ON_HEEL_ALONE[heel], force }
 }
 
 fn heading_of(number: usize) -> DVec2 {

@@ -488,8 +488,8 @@ pub(super) mod pair {
     /// Likelihood ratio to the best below which a pair does not count.
     pub(in crate::sense::track) const LIKELIHOODS: f64 = 1e-4;
 
-    /// Time from when a contact can be two feet to the first fit (s), and factor by which this time grows from one fit to
-    /// the next (our choice).
+    /// Time from when a contact can be two feet to the first fit (s), and factor by which the time since something began
+    /// grows from one fit to the next (our choice).
     pub(in crate::sense::track) const FIRST_S: f64 = 0.06;
 
     pub(in crate::sense::track) const LATER: f64 = 1.5;
@@ -509,11 +509,8 @@ pub(super) mod pair {
 
 /// Two feet that have landed together and stand.
 pub(super) mod stance {
-    /// Time from the first fit of two soles to the second (s), and factor by which the time since the first grows from
-    /// one fit to the next (our choice).
+    /// Time from the first fit of two soles to the second (s) (our choice).
     pub(in crate::sense::track) const FIRST_S: f64 = 0.1;
-
-    pub(in crate::sense::track) const LATER: f64 = 1.5;
 
     /// Share of the load below which a foot no longer stands as it landed.
     pub(in crate::sense::track) const LEAST_SHARE: f64 = 0.1;

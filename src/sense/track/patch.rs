@@ -55,15 +55,6 @@ impl Slice {
     }
 }
 
-/// Share of a patch with its middle at `c` and half width `h` on cell `number` of width `pitch`, and the first moment of
-/// that share about the cell's middle (m).
-#[inline]
-pub(super) fn part_on_cell(number: usize, pitch: f64, c: f64, h: f64) -> (f64, f64) {
-    let low = number as f64 * pitch;
-    let slice = Slice::new(low, low + pitch, c, h);
-    (slice.share, slice.moment)
-}
-
 impl Slice {
     /// The expected slice for a half width `h` with a standard deviation of `sigma`.
     ///

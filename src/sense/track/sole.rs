@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use super::Cells;
 use super::cell_of;
-use super::patch::part_on_cell;
+use super::patch::Slice;
 use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::loaded::LoadedTiles;
 
@@ -100,17 +100,20 @@ impl LoadsAround {
         {
             let force = sole.force * share;
             let at = place - self.corner;
-            let east: [_; SIDE] =
-                std::array::from_fn(|column| part_on_cell(column, self.pitch.x, at.x, half));
-            let north: [_; SIDE] = std::array::from_fn(|row| part_on_cell(row, self.pitch.y, at.y, half));
+            let slices = |along: f64, pitch: f64| -> [Slice; SIDE] {
+                std::array::from_fn(|cell| {
+                    Slice::new(cell as f64 * pitch, cell as f64 * pitch + pitch, along, half)
+                })
+            };
+            let (columns, rows) = (slices(at.x, self.pitch.x), slices(at.y, self.pitch.y));
             for (expected, at) in expected.iter_mut().zip(0..) {
-                let ((across, arm_x), (up, arm_y)) = (east[at % SIDE], north[at / SIDE]);
-                let on = across * up;
+                let (east, north) = (&columns[at % SIDE], &rows[at / SIDE]);
+                let on = east.share * north.share;
                 if on <= 0.0 {
                     continue;
                 }
                 expected.force += force * on;
-                expected.moment += DVec2::new(arm_x * up, across * arm_y) * force;
+                expected.moment += DVec2::new(east.moment * north.share, east.share * north.moment) * force;
                 expected.variance += (BLOTCH * force).powi(2) * (4.0 * on * (1.0 - on) + BLOTCH_LEAST);
             }
         }

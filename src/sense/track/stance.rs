@@ -4,12 +4,13 @@
 //! Their places are those of the likeliest pair of soles ([`pair`](super::pair)). Between two fits, the common centre
 //! of pressure divides the load along the line between the feet, and a movement across that line moves both.
 
-use super::params::stance::{ACROSS_M, CONTESTED_S, FIRST_S, LATER, LEAST_SHARE};
+use super::params::stance::{ACROSS_M, CONTESTED_S, FIRST_S, LEAST_SHARE};
 use glam::DVec2;
 
 use super::Cells;
 use super::elapsed::Elapsed;
 use super::pair::Pair;
+use super::refits::Refits;
 use super::sole::LoadsAround;
 use super::state::{EAST, FORCE, NORTH, Track};
 use super::strips::Strips;
@@ -23,15 +24,14 @@ pub(super) struct Stance {
     /// Places of this foot and of the other one, and their standard deviations (m).
     places: [DVec2; 2],
     deviations: [f64; 2],
-    /// Time since they were first placed, and time of the next fit (s).
-    age: f64,
-    next_s: f64,
+    /// Counts the time since they were first placed.
+    refits: Refits,
 }
 
 impl Stance {
     /// The stance beside `other`.
     pub(super) fn new(other: ContactId, places: [DVec2; 2], deviations: [f64; 2]) -> Self {
-        Self { other, places, deviations, age: 0.0, next_s: FIRST_S }
+        Self { other, places, deviations, refits: Refits::first_after(FIRST_S) }
     }
 
     /// Takes the places of `pair`.
@@ -64,9 +64,7 @@ pub(super) fn place(group: &mut [&mut Track], tiles: &LoadedTiles, cells: &Cells
     let Some(mut stance) = foot.stance.take() else { return false };
     let both = foot.tiles_with(other);
     let strips = Strips::of(both.iter().map(|&position| &tiles.list()[position as usize]), cells.pitch);
-    stance.age += elapsed.dt;
-    if stance.age >= stance.next_s {
-        stance.next_s = LATER * stance.age;
+    if stance.refits.is_due_after(elapsed.dt) {
         let loads = LoadsAround::of(strips.middle, &both, tiles, cells);
         if let Some(pair) = Pair::of(&loads, strips.middle, strips.force) {
             stance.fit(&pair);
