@@ -14,7 +14,6 @@ use super::outline::FanExtents;
 use super::pair::Fitted;
 use super::patch::PatchOnTile;
 use super::reach::NOTHING_BORNE;
-use super::rivals::Lead;
 use super::smoothed::Smoothed;
 use super::stance::Stance;
 use super::strips::Residual;
@@ -115,8 +114,6 @@ pub(super) struct Track {
     pub accompanied: bool,
     /// Log odds of two feet against one.
     pub explanation: Explanation,
-    /// The rival explanation of its group that is ahead of the filter's, if it is the first of the group.
-    pub lead: Lead,
     /// Time for which it stays ambiguous since another explanation of its loads was likely (s).
     pub contested_s: f64,
     /// The foot with which it landed and stands.
@@ -174,7 +171,6 @@ impl Track {
             landed_together: false,
             accompanied: false,
             explanation: Explanation::new(),
-            lead: Lead::default(),
             contested_s: 0.0,
             stance: None,
             fitted: Fitted::default(),
