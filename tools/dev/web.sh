@@ -77,6 +77,7 @@ build_web() {
     rm "$made/offline.js.old"
     pack_web "$made"
     say "$made: $(wc -c <"$made/underfoot.wasm") bytes of WebAssembly, $(gzip -9c "$made/underfoot.wasm" | wc -c) with gzip"
+    [ -z "${page_of_tests:-}" ] || return 0
     say "try it: python3 -m http.server --bind 127.0.0.1 --directory $made 8000, then http://127.0.0.1:8000"
     say "or with a floor, since \`./dev run\` builds it in from now on: ./dev run run map --web 127.0.0.1:9002"
 }
