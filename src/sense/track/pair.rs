@@ -82,10 +82,10 @@ impl Pair {
                 squares[which] += foot.centre.distance_squared(centre) * weight;
             }
         }
-        for which in 0..2 {
+        for (which, square) in squares.into_iter().enumerate() {
             mean.places[which] /= sum;
             mean.forces[which] /= sum;
-            let spread = squares[which] / sum - mean.places[which].distance_squared(centre);
+            let spread = square / sum - mean.places[which].distance_squared(centre);
             mean.deviations[which] = (0.5 * spread.max(0.0) + STEP_M * STEP_M).sqrt();
         }
         mean
