@@ -488,11 +488,8 @@ pub(super) mod pair {
     /// Likelihood ratio to the best below which a pair does not count.
     pub(in crate::sense::track) const LIKELIHOODS: f64 = 1e-4;
 
-    /// Time from when a contact can be two feet to the first fit (s), and factor by which the time since something began
-    /// grows from one fit to the next (our choice).
+    /// Time from when a contact can be two feet to the first fit (s) (our choice).
     pub(in crate::sense::track) const FIRST_S: f64 = 0.06;
-
-    pub(in crate::sense::track) const LATER: f64 = 1.5;
 
     /// Log odds of two soles that one may reach by its own shape: recorded prints of five people that stand alone reach
     /// 7 in one of ten and 10 in one of fifty; two of them side by side reach 9 in four of ten at 12 and 16 cm, and in
@@ -505,6 +502,12 @@ pub(super) mod pair {
 
     /// Standard deviation of their places up to which the feet become two tracks (m).
     pub(in crate::sense::track) const PLACED_M: f64 = 0.06;
+}
+
+/// Repeated fits.
+pub(super) mod refits {
+    /// Factor by which the time since the beginning grows from one fit to the next (our choice).
+    pub(in crate::sense::track) const LATER: f64 = 1.5;
 }
 
 /// Two feet that have landed together and stand.

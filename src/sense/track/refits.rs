@@ -1,8 +1,8 @@
 //! The times of a fit that is repeated less and less often.
 
-use super::params::pair::LATER;
+use super::params::refits::LATER;
 
-/// Counts the time since something began, up to the next fit.
+/// The time since the beginning, and that of the next fit (s).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Refits {
     age: f64,
