@@ -50,13 +50,10 @@ pack_web() {
 # last tenths of its size take.
 build_web() {
     local target=${CARGO_TARGET_DIR:-target} bindgen built optimiser=crates/underfoot-web/node_modules/.bin/wasm-opt
-    local made; made=$(web_folder)
-    if [ -n "${page_of_tests:-}" ]; then
-        local -x CARGO_PROFILE_PAGE_LTO=off CARGO_PROFILE_PAGE_CODEGEN_UNITS=16 CARGO_PROFILE_PAGE_OPT_LEVEL=1
-    fi
+    local made profile=page${page_of_tests:+-of-tests}; made=$(web_folder)
     install_web_tools
-    CARGO_ENCODED_RUSTFLAGS=$(page_flags) step cargo rustc --locked --profile page --target wasm32-unknown-unknown -p underfoot-web --lib --crate-type cdylib
-    built=$target/wasm32-unknown-unknown/page/underfoot_web.wasm
+    CARGO_ENCODED_RUSTFLAGS=$(page_flags) step cargo rustc --locked --profile "$profile" --target wasm32-unknown-unknown -p underfoot-web --lib --crate-type cdylib
+    built=$target/wasm32-unknown-unknown/$profile/underfoot_web.wasm
     rm -rf "$made"
     mkdir -p "$(dirname "$made")"
     local flags=(--target web --no-typescript --remove-producers-section --out-name underfoot --out-dir "$made")
