@@ -95,8 +95,9 @@ pub struct Contact {
     /// Whether it shares its tiles with another contact so that the forces do not determine the division: the sum of
     /// the two is reliable, each one's part is an estimate.
     pub ambiguous: bool,
-    /// Whether it was split from another contact and has carried no tile by itself since: it may be no foot. It is
-    /// `ambiguous` as well, and operates no control with a guard.
+    /// Whether it may be a part of another contact: it was split from that one, or other explanations of their loads
+    /// are likely, and it has carried no tile by itself since. It is `ambiguous` as well, and operates no control with
+    /// a guard.
     pub split: bool,
     /// The worst quality among the tiles that carry it; never worse than [`Quality::Degraded`], since worse tiles
     /// carry no contact.

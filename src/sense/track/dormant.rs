@@ -153,7 +153,7 @@ impl Track {
     }
 
     /// Sets the foot to `place`, beside another foot.
-    fn rest_at(&mut self, force: f64, place: DVec2) {
+    pub(super) fn rest_at(&mut self, force: f64, place: DVec2) {
         self.stand(force, place);
         self.reset_covariance(0.02);
         self.covariance[FORCE][FORCE] = (0.2 * force + 5.0).powi(2);

@@ -11,7 +11,7 @@ use super::model::{observe, predict};
 use super::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, THROWN_M};
 use super::state::{EAST, NORTH, STATES, Track};
 use super::strips::{Strips, centroid_sigma};
-use super::{Cells, Tracker, stance, touchdown};
+use super::{Cells, Tracker, rivals, stance, touchdown};
 use crate::parallel;
 use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::contact::ContactId;
@@ -24,7 +24,7 @@ pub(super) const BATCHES: usize = 16;
 const MOST_GROUPS: usize = 256;
 
 /// The feet of a group, up to the capacity of one filter.
-type Group<'a> = ArrayVec<&'a mut Track, MOST_FEET>;
+pub(super) type Group<'a> = ArrayVec<&'a mut Track, MOST_FEET>;
 
 /// The joint filter for one batch of groups, and the covariances that it keeps for the next frame.
 #[derive(Clone, Debug)]
@@ -76,6 +76,7 @@ impl Tracker {
                     if !place_touchdown(group, tiles.list(), cells) {
                         estimator.estimate(group, links, tiles.list(), cells, elapsed);
                     }
+                    rivals::compare(group, tiles.list(), cells, elapsed);
                 }
             });
         }

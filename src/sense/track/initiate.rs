@@ -34,6 +34,13 @@ pub(super) struct CandidateTrack {
     keeps: Option<KeptFoot>,
 }
 
+impl CandidateTrack {
+    /// A foot of `force` newtons that has landed at `place`, known to `deviation` metres, on these of the loaded tiles.
+    pub(super) fn found(force: f64, place: DVec2, deviation: f64, tiles: SmallVec<[u32; 4]>) -> Self {
+        Self { force, place, deviation, tiles, keeps: None }
+    }
+}
+
 /// One of two feet that have landed together.
 #[derive(Clone, Copy, Debug)]
 struct KeptFoot {

@@ -129,8 +129,13 @@ impl Track {
     /// Weight of its shape residuals: exp(−(d / 0.05 m)²) (1 − exp(−t/τ)) with the distance d from its last place
     /// alone and the time t alone.
     pub(super) fn residual_weight(&self) -> f64 {
+        self.residual_weight_at(self.centre())
+    }
+
+    /// The same if its centre of pressure were at `centre`.
+    pub(super) fn residual_weight_at(&self, centre: DVec2) -> f64 {
         self.alone_at.map_or(0.0, |place| {
-            let moved = place.distance(self.centre()) / 0.05;
+            let moved = place.distance(centre) / 0.05;
             (-moved * moved).exp() * (1.0 - (-self.alone_s / KNOWN_S).exp())
         })
     }

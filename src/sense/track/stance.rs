@@ -4,7 +4,8 @@
 //! Their places are those of the likeliest pair of soles ([`pair`](super::pair)). Between two fits, the common centre
 //! of pressure divides the load along the line between the feet, and a movement across that line moves both.
 
-use super::params::stance::{ACROSS_M, CONTESTED_S, FIRST_S, LEAST_SHARE};
+use super::params::rivals::CONTESTED_S;
+use super::params::stance::{ACROSS_M, FIRST_S, LEAST_SHARE};
 use glam::DVec2;
 
 use super::Cells;

@@ -14,6 +14,7 @@ use super::outline::FanExtents;
 use super::pair::Fitted;
 use super::patch::PatchOnTile;
 use super::reach::NOTHING_BORNE;
+use super::rivals::Lead;
 use super::smoothed::Smoothed;
 use super::stance::Stance;
 use super::strips::Residual;
@@ -66,7 +67,8 @@ pub(super) struct Track {
     pub ambiguous: bool,
     /// Whether other feet share its tiles.
     pub shared: bool,
-    /// The track from which it was split, until it has carried a tile by itself: it may be no foot at all.
+    /// The track of which it may be a part, until it has carried a tile by itself: it was split from that one, or is
+    /// lighter while other explanations are likely.
     pub split_from: Option<ContactId>,
     /// Differences between its shape and the model patch, from its last time alone.
     pub residuals: SmallVec<[Residual; 8]>,
@@ -114,6 +116,8 @@ pub(super) struct Track {
     pub accompanied: bool,
     /// Log odds of two feet against one.
     pub explanation: Explanation,
+    /// The rival explanation of its group that is ahead of the filter's, if it is the first of the group.
+    pub lead: Lead,
     /// Time for which it stays ambiguous since another explanation of its loads was likely (s).
     pub contested_s: f64,
     /// The foot with which it landed and stands.
@@ -171,6 +175,7 @@ impl Track {
             landed_together: false,
             accompanied: false,
             explanation: Explanation::new(),
+            lead: Lead::default(),
             contested_s: 0.0,
             stance: None,
             fitted: Fitted::default(),

@@ -428,3 +428,71 @@ fn of_three_feet_on_shared_tiles_the_one_that_leaves_is_not_kept_by_a_wrong_divi
         assert_eq!(contacts.iter().map(|contact| contact.id).collect::<Vec<_>>(), ids, "{at}: {contacts:?}");
     }
 }
+
+/// Ids of two feet that a person puts down one after the other, and stands on for a second.
+fn stand_on(floor: &mut Floor, first: Sole, second: Sole) -> [u32; 2] {
+    for milli in 0..1800_u16 {
+        let milli = f32::from(milli);
+        let (down, shared) = (smooth(0.0, 100.0, milli), 0.5 * smooth(400.0, 700.0, milli));
+        let feet = [
+            Sole { force: 700.0 * down * (1.0 - shared), ..first },
+            Sole { force: 700.0 * down * shared, ..second },
+        ];
+        floor.feel(&feet, 1);
+    }
+    [first, second].map(|foot| {
+        let nearest = |contact: &&Contact| contact.centroid.distance_squared(foot.centre());
+        let contacts = floor.sensing.contacts().iter();
+        contacts.min_by(|a, b| nearest(a).total_cmp(&nearest(b))).unwrap().id.0
+    })
+}
+
+#[test]
+fn the_foot_that_turns_on_its_heel_keeps_its_identity_while_the_other_one_lifts() {
+    // The pivot stands over a seam and is the older foot: the filter holds it and moves the other one into its place.
+    for heading in [-0.37, 0.6, 2.0] {
+        let pivot = Sole::new(Vec2::new(0.51, 0.92), heading, 0.0);
+        let other = Sole::new(pivot.at + Vec2::from_angle(heading).perp() * 0.34, heading, 0.0);
+        let mut floor = Floor::new();
+        let ids = stand_on(&mut floor, pivot, other);
+        for milli in 0..700_u16 {
+            let share = smooth(0.0, 350.0, milli.into());
+            let feet = [
+                Sole { force: 350.0 + 350.0 * share, ball: 0.5 - 0.5 * share, ..pivot },
+                Sole { force: 350.0 - 350.0 * share, ..other },
+            ];
+            floor.feel(&feet, 1);
+        }
+        let contacts = floor.sensing.contacts();
+        let heaviest = contacts.iter().max_by(|a, b| a.force.0.total_cmp(&b.force.0)).unwrap();
+        assert_eq!(heaviest.id.0, ids[0], "heading {heading}: {contacts:?}");
+    }
+}
+
+#[test]
+fn a_knee_beside_a_standing_foot_and_the_toes_behind_it_is_a_third_contact() {
+    // The standing foot, the toes of the other leg behind it, and 35 cm before those its knee, on shared tiles.
+    let stands = Sole::new(Vec2::new(0.60, 0.90), 2.77, 0.0);
+    let (toes, knee) = (Vec2::new(0.88, 1.04), Vec2::new(0.55, 1.18));
+    let mut floor = Floor::new();
+    for milli in 0..3000_u16 {
+        let milli = f32::from(milli);
+        let (down, behind, kneels) =
+            (smooth(0.0, 100.0, milli), smooth(800.0, 1100.0, milli), smooth(1700.0, 2000.0, milli));
+        let on_toes = 160.0 * behind - 65.0 * kneels;
+        let feet = [
+            Sole { force: 600.0 * down - 160.0 * behind - 140.0 * kneels, ..stands },
+            // A heel without load: only the ball presses.
+            Sole { ball: 1.0, ..Sole::new(toes - Vec2::from_angle(2.77) * 0.07, 2.77, on_toes) },
+            Sole { ball: 1.0, ..Sole::new(knee - Vec2::from_angle(2.77) * 0.07, 2.77, 220.0 * kneels) },
+        ];
+        floor.feel(&feet, 1);
+    }
+    let contacts = floor.sensing.contacts();
+    for place in [stands.centre(), toes, knee] {
+        assert!(
+            contacts.iter().any(|contact| contact.centroid.distance(place) < 0.06),
+            "nothing at {place}: {contacts:?}"
+        );
+    }
+}
