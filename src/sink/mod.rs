@@ -30,6 +30,7 @@ mod stereo;
 mod tuio;
 #[cfg(feature = "net")]
 mod udp;
+mod wait_free;
 #[cfg(all(unix, feature = "net"))]
 mod watchdog;
 #[cfg(feature = "wav")]
@@ -63,6 +64,7 @@ pub use since::Since;
 pub use stereo::StereoSink;
 #[cfg(feature = "net")]
 pub use tuio::{TuioSink, TuioVersion};
+pub use wait_free::{WaitFreeReceiver, WaitFreeSender, wait_free};
 #[cfg(all(unix, feature = "net"))]
 pub use watchdog::Watchdog;
 #[cfg(feature = "wav")]

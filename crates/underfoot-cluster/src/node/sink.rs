@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
-use underfoot::sink::{EventSink, Report};
+use underfoot::sink::{EventSink, Report, WaitFreeSender};
 use underfoot::units::Instant;
 
 use super::draft::Draft;
@@ -19,7 +18,7 @@ const QUIET: Duration = Duration::from_millis(20);
 /// Passes the reports of a floor to the sending thread, without ever waiting for it.
 #[derive(Debug)]
 pub struct NodeSink {
-    out: SyncSender<Draft>,
+    out: WaitFreeSender<Draft>,
     draft: Draft,
     has_frame: bool,
     sent: Instant,
@@ -29,7 +28,7 @@ pub struct NodeSink {
 impl NodeSink {
     /// A sink that passes drafts to `out`. If `out` is full, the next draft includes the content of this one.
     #[must_use]
-    pub fn new(out: SyncSender<Draft>) -> Self {
+    pub fn new(out: WaitFreeSender<Draft>) -> Self {
         let (draft, held_up) = (Draft::default(), Arc::default());
         Self { out, draft, has_frame: false, sent: Instant::START, held_up }
     }
@@ -64,16 +63,15 @@ impl EventSink for NodeSink {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc::sync_channel;
-
     use underfoot::sense::Contact;
+    use underfoot::sink::wait_free;
 
     use super::*;
     use crate::message::NodeMessage;
 
     #[test]
     fn frames_are_told_every_2_ms_and_silence_every_20() {
-        let (out, drafts) = sync_channel(100);
+        let (out, mut drafts) = wait_free(100);
         let mut sink = NodeSink::new(out);
         for ms in 1000..1010 {
             let contacts = vec![Contact::default()];

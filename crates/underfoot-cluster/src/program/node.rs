@@ -4,7 +4,6 @@ use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -13,7 +12,7 @@ use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 #[cfg(unix)]
 use underfoot::sink::Watchdog;
-use underfoot::sink::{Fanout, Rank, claim_priority};
+use underfoot::sink::{Fanout, Rank, claim_priority, wait_free};
 use underfoot::source::{FloorInput, UdpSource};
 use underfoot_cluster::auth::{Opened, Role};
 use underfoot_cluster::message::{LayoutName, NodeMessage, ToNodes, VERSION, decode, fingerprint};
@@ -116,7 +115,7 @@ pub(crate) fn run(args: Args) -> Result<(), ClusterFailure> {
     let source = source.sealed_by(Box::new(seal), computers);
     let (source, forwarded) = source.forwarding(&floor.forwardings(area))?;
     let input = on_clock(source, steps, args.slow);
-    let (drafts, drafted) = sync_channel(WAITING);
+    let (drafts, drafted) = wait_free(WAITING);
     let sink = NodeSink::new(drafts);
     let held_up = sink.held_up();
     #[cfg_attr(not(unix), expect(unused_mut, reason = "other systems have no watchdog"))]
@@ -192,7 +191,7 @@ pub(crate) fn run(args: Args) -> Result<(), ClusterFailure> {
         worker,
         unsent: 0,
     };
-    let unsent = teller.run(&drafted);
+    let unsent = teller.run(drafted);
     if forwarded.sent() > 0 {
         eprintln!("{} packets forwarded to neighbours.", forwarded.sent());
     }

@@ -1,11 +1,12 @@
 //! The thread of a node that sends its messages and executes the guard's actions.
 
-use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::mpsc::RecvTimeoutError;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant as HostInstant};
 
 use underfoot::runtime::Session;
 use underfoot::serve::FloorCommand;
+use underfoot::sink::WaitFreeReceiver;
 use underfoot::units::{HostClock, Instant};
 use underfoot::wire::ControlMessage;
 use underfoot_cluster::auth::{AuthSession, MessageKind};
@@ -78,7 +79,7 @@ pub(super) struct Teller {
 
 impl Teller {
     /// Runs until the floor's session has ended; returns the number of messages that could not be sent.
-    pub(super) fn run(mut self, drafts: &Receiver<Draft>) -> u64 {
+    pub(super) fn run(mut self, mut drafts: WaitFreeReceiver<Draft>) -> u64 {
         let mut values_told: Option<HostInstant> = None;
         loop {
             match drafts.recv_timeout(PATIENCE) {

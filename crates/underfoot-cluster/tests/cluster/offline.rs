@@ -2,14 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
-use std::sync::mpsc::sync_channel;
 use std::time::Duration;
 
 use underfoot::floor::{Board, Floor};
 use underfoot::layout::Layout;
 use underfoot::sense::Method;
 use underfoot::serve::Server;
-use underfoot::sink::EventSink;
+use underfoot::sink::{EventSink, wait_free};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
 use underfoot::wire::{LinkCounters, SensorPacket};
@@ -72,7 +71,7 @@ impl SensorSource for Part {
 fn messages(hall: (&Floor, &Layout, usize), area: &str, node: u64) -> Vec<NodeMessage> {
     let (floor, layout, _) = hall;
     // One every 2 ms, and some for events, in a round of half a minute.
-    let (out, drafts) = sync_channel(30_000 * hall.2);
+    let (out, mut drafts) = wait_free(30_000 * hall.2);
     let area = floor.area(area).unwrap();
     let part = floor.part(area).unwrap();
     serve(hall, &part, layout.clone().part(area, &floor.geometry), NodeSink::new(out));
