@@ -34,16 +34,13 @@ use super::elapsed::Elapsed;
 use super::groups::Group;
 use super::initiate::CandidateTrack;
 use super::outline::FanExtents;
-use super::state::Track;
+use super::state::{MOST_TILES, Track, tiles_of};
 use super::static_fit::{Fit, MOST_PARTS, Part, StripLoads};
 use super::touchdown::Touchdown;
 use crate::sense::centroid::tile::LoadedTile;
 
 /// Maximum number of feet of a group with rivals: one less than a fit has.
 const MOST: usize = MOST_PARTS - 1;
-
-/// Maximum number of tiles of such a group, far more than its feet cover.
-const MOST_TILES: usize = 32;
 
 /// The rival that was ahead when they were last compared, and how often in succession.
 #[derive(Clone, Copy, Debug, Default)]
@@ -198,12 +195,7 @@ impl Best {
 impl<'a> Explanations<'a> {
     fn of(group: &'a Group<'_>, list: &[LoadedTile], cells: &Cells) -> Self {
         let feet: ArrayVec<&Track, MOST> = group.iter().map(|foot| &**foot).take(MOST).collect();
-        let mut positions = ArrayVec::<u32, MOST_TILES>::new();
-        for &position in feet.iter().flat_map(|foot| &foot.tiles) {
-            if !positions.is_full() && !positions.contains(&position) {
-                positions.push(position);
-            }
-        }
+        let positions = tiles_of(feet.iter().copied());
         let tiles = positions.iter().map(|&position| &list[position as usize]);
         let loads = StripLoads::of(tiles.clone(), cells.pitch);
         Self { feet, loads, tiles: tiles.map(|tile| cells.of(tile)).collect() }

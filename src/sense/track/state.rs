@@ -31,6 +31,20 @@ pub(super) const NORTH: usize = 4;
 pub(super) const HALF_EAST: usize = 6;
 pub(super) const HALF_NORTH: usize = 7;
 
+/// Maximum number of tiles of a group of feet, far more than its feet cover.
+pub(super) const MOST_TILES: usize = 32;
+
+/// Positions of the tiles of `feet`, each once, up to the capacity.
+pub(super) fn tiles_of<'a>(feet: impl IntoIterator<Item = &'a Track>) -> ArrayVec<u32, MOST_TILES> {
+    let mut all = ArrayVec::new();
+    for &position in feet.into_iter().flat_map(|foot| &foot.tiles) {
+        if !all.is_full() && !all.contains(&position) {
+            all.push(position);
+        }
+    }
+    all
+}
+
 /// One foot on the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
@@ -254,15 +268,9 @@ impl Track {
         self.touchdown.is_some_and(|touchdown| touchdown.existing == existing.id)
     }
 
-    /// Its tiles and those of `other`, each once, up to the capacity: far more than two feet cover.
-    pub(super) fn tiles_with(&self, other: &Self) -> ArrayVec<u32, 32> {
-        let mut both = ArrayVec::new();
-        for &position in self.tiles.iter().chain(&other.tiles) {
-            if !both.is_full() && !both.contains(&position) {
-                both.push(position);
-            }
-        }
-        both
+    /// Its tiles and those of `other`, each once, up to the capacity.
+    pub(super) fn tiles_with(&self, other: &Self) -> ArrayVec<u32, MOST_TILES> {
+        tiles_of([self, other])
     }
 
     /// Adds `tiles` without allocating memory.
