@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::frame;
 use crate::floor::Geometry;
 use crate::recording::{EntrySink, tapped};
-use crate::sink::{SinkError, Worker};
+use crate::sink::{SinkError, WaitFreeReceiver, Worker};
 use crate::source::FloorInput;
 use crate::source::log::Entries;
 
@@ -36,8 +36,8 @@ impl MirrorFeed {
             message: format!("the floor can't be shown elsewhere: {source}"),
             source,
         };
-        let work = move |batches: &std::sync::mpsc::Receiver<Entries>| {
-            for entries in batches {
+        let work = move |batches: &mut WaitFreeReceiver<Entries>| {
+            for entries in batches.iter() {
                 let mut bytes = Vec::with_capacity(128 * entries.len());
                 frame::write(&entries, &mut bytes);
                 tell(bytes);

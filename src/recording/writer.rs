@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant as HostInstant};
 
 use mcap::records::MessageHeader;
@@ -17,7 +17,7 @@ use super::{
     VERSION,
 };
 use crate::sense::Method;
-use crate::sink::Disk;
+use crate::sink::{Disk, WaitFreeReceiver};
 use crate::source::log::LogEntry;
 use crate::units::Instant;
 
@@ -133,7 +133,7 @@ impl RecordingFile {
 
     /// Writes jobs until all senders are dropped. A full or failed disk ends the recording, not sensing: later jobs
     /// are counted as lost.
-    pub(super) fn write_all(mut self, jobs: &Receiver<Job>, lost: &AtomicU64) {
+    pub(super) fn write_all(mut self, jobs: &mut WaitFreeReceiver<Job>, lost: &AtomicU64) {
         let mut flushed = HostInstant::now();
         let written = loop {
             let due = FLUSH_EVERY.saturating_sub(flushed.elapsed());

@@ -3,7 +3,6 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::SyncSender;
 use std::time::Instant as HostInstant;
 
 use triple_buffer::Input;
@@ -11,7 +10,7 @@ use triple_buffer::Input;
 use super::event::Event;
 use super::queue::QueueInput;
 use crate::serve::FloorCommand;
-use crate::sink::{CrackRateLimiter, EventSink, Report, Worker};
+use crate::sink::{CrackRateLimiter, EventSink, Report, SharedSender, Worker};
 use crate::units::Instant;
 use crate::widget::WidgetId;
 use crate::wire::ControlMessage;
@@ -37,12 +36,12 @@ impl Waker {
     /// `commands`.
     pub(super) fn start(
         mut wake: Box<dyn FnMut() + Send>,
-        commands: SyncSender<FloorCommand>,
+        commands: SharedSender<FloorCommand>,
     ) -> std::io::Result<Self> {
         let due = Arc::new(AtomicBool::new(false));
         let begun = Arc::clone(&due);
         let worker = Worker::spawn("wake", move |calls| {
-            for () in calls {
+            for () in calls.iter() {
                 begun.store(false, Ordering::Release);
                 if catch_unwind(AssertUnwindSafe(&mut wake)).is_err() {
                     tracing::warn!(

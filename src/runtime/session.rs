@@ -3,7 +3,7 @@
 use std::fmt;
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -18,6 +18,7 @@ use super::snapshot::{SessionSnapshot, Shown};
 use crate::floor::Geometry;
 use crate::layout::Layout;
 use crate::serve::{FloorCommand, Refusal};
+use crate::sink::SharedSender;
 use crate::source::FloorInput;
 use crate::units::HostClock;
 use crate::widget::WidgetId;
@@ -36,7 +37,7 @@ pub(super) struct Inner {
     pub(super) queue: Arc<EventQueue>,
     pub(super) held: Arc<HeldWatch>,
     pub(super) shown: Arc<Shown>,
-    pub(super) commands: SyncSender<FloorCommand>,
+    pub(super) commands: SharedSender<FloorCommand>,
     /// Address on which the source listens.
     pub(super) local_addr: Option<SocketAddr>,
     pub(super) geometry: Geometry,

@@ -4,7 +4,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender};
+use std::sync::mpsc::SyncSender;
 
 use super::app_sink::Waker;
 use super::builder::StartError;
@@ -19,7 +19,7 @@ use crate::layout::Layout;
 use crate::parallel::ThreadPool;
 use crate::sense::Method;
 use crate::serve::{FloorCommand, Neighbours, Server};
-use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, SinkError, claim_priority};
+use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, SinkError, WaitFreeReceiver, claim_priority};
 use crate::source::FloorInput;
 use crate::units::{HostClock, Instant};
 use crate::wire::Prefix;
@@ -53,7 +53,7 @@ pub(super) struct SensingThread {
     /// Distributes the feet of a crowd; `None` if the sensing thread works alone.
     #[cfg(feature = "threads")]
     pub(super) pool: Option<ThreadPool>,
-    pub(super) commands: Receiver<FloorCommand>,
+    pub(super) commands: WaitFreeReceiver<FloorCommand>,
     pub(super) snapshots: triple_buffer::Input<engine::Snapshot>,
     pub(super) stop: Arc<AtomicBool>,
 }

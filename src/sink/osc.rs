@@ -3,13 +3,12 @@
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::Receiver;
 
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::periodic::{Latest, PeriodicSender};
 use super::udp::UdpOut;
 use super::worker::Worker;
-use super::{EventSink, Report, SinkError};
+use super::{EventSink, Report, SinkError, WaitFreeReceiver};
 use crate::outgoing::{
     write_alive, write_area, write_contacts, write_control, write_crack, write_device, write_event,
     write_health, write_held, write_ignored, write_mute, write_page,
@@ -160,9 +159,9 @@ struct Sender<S> {
 }
 
 impl<S: FnMut(&[u8])> Sender<S> {
-    fn run(mut self, jobs: &Receiver<Job>, latest: &Latest) {
+    fn run(mut self, jobs: &mut WaitFreeReceiver<Job>, latest: &Latest) {
         let mut bytes = Vec::new();
-        for job in jobs {
+        for job in jobs.iter() {
             match job {
                 Job::Report(report) => self.write(&report, &mut bytes),
                 Job::Contacts => self.contacts(&latest.fetch().1, &mut bytes),

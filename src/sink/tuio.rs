@@ -3,7 +3,6 @@
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::Receiver;
 use std::time::SystemTime;
 
 use rosc::OscTime;
@@ -11,7 +10,7 @@ use rosc::OscTime;
 use super::periodic::{Latest, PeriodicSender};
 use super::udp::UdpOut;
 use super::worker::Worker;
-use super::{EventSink, Report, SinkError};
+use super::{EventSink, Report, SinkError, WaitFreeReceiver};
 use crate::floor::Geometry;
 use crate::outgoing::{Tuio1, Tuio2, TuioProfiles, tuio_first_frame};
 use crate::sense::Contact;
@@ -108,9 +107,9 @@ impl EventSink for TuioSink {
 }
 
 /// Sends until the jobs end, then says goodbye.
-fn run(jobs: &Receiver<Job>, latest: &Latest, mut speaker: Speaker, out: &UdpOut) {
+fn run(jobs: &mut WaitFreeReceiver<Job>, latest: &Latest, mut speaker: Speaker, out: &UdpOut) {
     let mut now = Instant::START;
-    for job in jobs {
+    for job in jobs.iter() {
         match job {
             Job::Contacts => {
                 let (at, contacts) = latest.fetch();

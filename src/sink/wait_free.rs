@@ -4,8 +4,9 @@
 //! begun to take something finishes, and a receiver spins for a sender that has begun to send. If the spinning thread
 //! has the higher real-time priority and the other one needs its processor, that moment lasts for ever.
 
-use std::sync::mpsc::RecvTimeoutError;
-use std::sync::{Arc, OnceLock};
+use std::sync::atomic::{Ordering, fence};
+use std::sync::mpsc::{RecvError, RecvTimeoutError, SendError, TrySendError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{self, Thread};
 use std::time::{Duration, Instant};
 
@@ -25,6 +26,14 @@ pub struct WaitFreeReceiver<T> {
     items: Consumer<T>,
     reader: Arc<OnceLock<Thread>>,
 }
+
+/// An end of the queue that gives, for several threads: each waits while another one gives, and the receiver for none
+/// of them.
+#[derive(Debug)]
+pub struct SharedSender<T>(Arc<Mutex<WaitFreeSender<T>>>);
+
+/// Interval between two attempts to send into a full queue.
+const ROOM_EVERY: Duration = Duration::from_millis(1);
 
 /// Wakes the thread that takes, also when dropped.
 #[derive(Debug)]
@@ -54,6 +63,46 @@ impl<T> WaitFreeSender<T> {
     }
 }
 
+impl<T> SharedSender<T> {
+    /// The same end for several threads.
+    #[must_use]
+    pub fn new(sender: WaitFreeSender<T>) -> Self {
+        Self(Arc::new(Mutex::new(sender)))
+    }
+
+    /// Queues `item` and wakes the receiver.
+    ///
+    /// # Errors
+    /// Returns `item` if the queue is full or the receiver has been dropped.
+    pub fn try_send(&self, item: T) -> Result<(), TrySendError<T>> {
+        let mut sender = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        sender.try_send(item).map_err(|item| {
+            if sender.items.is_abandoned() { TrySendError::Disconnected(item) } else { TrySendError::Full(item) }
+        })
+    }
+
+    /// Queues `item`, waits until there is room for it, and wakes the receiver.
+    ///
+    /// # Errors
+    /// Returns `item` if the receiver has been dropped.
+    pub fn send(&self, mut item: T) -> Result<(), SendError<T>> {
+        loop {
+            match self.try_send(item) {
+                Ok(()) => return Ok(()),
+                Err(TrySendError::Disconnected(item)) => return Err(SendError(item)),
+                Err(TrySendError::Full(again)) => item = again,
+            }
+            thread::sleep(ROOM_EVERY);
+        }
+    }
+}
+
+impl<T> Clone for SharedSender<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
 impl<T> WaitFreeReceiver<T> {
     /// The next item, or `None` if there is none yet. Does not wait.
     pub fn try_recv(&mut self) -> Option<T> {
@@ -66,16 +115,11 @@ impl<T> WaitFreeReceiver<T> {
     /// [`RecvTimeoutError::Timeout`] if none has come, [`RecvTimeoutError::Disconnected`] once the sender has been
     /// dropped and everything taken.
     pub fn recv_timeout(&mut self, patience: Duration) -> Result<T, RecvTimeoutError> {
-        self.reader.get_or_init(thread::current);
+        self.be_reader();
         let start = Instant::now();
         loop {
-            // Asked first: what was sent before the sender was dropped is still taken.
-            let is_last = self.items.is_abandoned();
-            if let Some(item) = self.try_recv() {
-                return Ok(item);
-            }
-            if is_last {
-                return Err(RecvTimeoutError::Disconnected);
+            if let Some(taken) = self.take_or_end() {
+                return taken.map_err(|RecvError| RecvTimeoutError::Disconnected);
             }
             let left = patience.saturating_sub(start.elapsed());
             if left.is_zero() {
@@ -86,6 +130,41 @@ impl<T> WaitFreeReceiver<T> {
         }
     }
 
+    /// The next item, for which it waits.
+    ///
+    /// # Errors
+    /// [`RecvError`] once the sender has been dropped and everything taken.
+    pub fn recv(&mut self) -> Result<T, RecvError> {
+        self.be_reader();
+        loop {
+            if let Some(taken) = self.take_or_end() {
+                return taken;
+            }
+            // As above.
+            thread::park();
+        }
+    }
+
+    /// All items until the sender is dropped; waits for each.
+    pub fn iter(&mut self) -> impl Iterator<Item = T> {
+        std::iter::from_fn(|| self.recv().ok())
+    }
+
+    /// Lets the sender wake this thread.
+    fn be_reader(&self) {
+        self.reader.get_or_init(thread::current);
+        // Either the sender sees this thread after it has queued an item, or this thread sees the item.
+        fence(Ordering::SeqCst);
+    }
+
+    /// The next item, or the end; `None` while there is neither.
+    fn take_or_end(&mut self) -> Option<Result<T, RecvError>> {
+        // Asked first: what was sent before the sender was dropped is still taken.
+        let is_last = self.items.is_abandoned();
+        let item = self.try_recv();
+        item.map(Ok).or_else(|| is_last.then_some(Err(RecvError)))
+    }
+
     /// All items that are there. Does not wait.
     pub fn try_iter(&mut self) -> impl Iterator<Item = T> {
         std::iter::from_fn(|| self.try_recv())
@@ -94,6 +173,8 @@ impl<T> WaitFreeReceiver<T> {
 
 impl Wake {
     fn wake(&self) {
+        // See `be_reader`.
+        fence(Ordering::SeqCst);
         if let Some(reader) = self.0.get() {
             reader.unpark();
         }
@@ -142,6 +223,26 @@ mod tests {
         assert_eq!(receiver.recv_timeout(Duration::ZERO), Err(RecvTimeoutError::Timeout));
         drop(receiver);
         assert_eq!(sender.try_send(4), Err(4));
+    }
+
+    #[test]
+    fn several_threads_send_and_wait_for_room() {
+        let (sender, mut receiver) = wait_free(2);
+        let sender = SharedSender::new(sender);
+        let givers = [0, 1_000].map(|first| {
+            let sender = sender.clone();
+            thread::spawn(move || (first..first + 50).for_each(|number| sender.send(number).unwrap()))
+        });
+        let mut taken: Vec<i32> = (0..100).map(|_| receiver.recv_timeout(LONG).unwrap()).collect();
+        taken.sort_unstable();
+        assert!(taken.into_iter().eq((0..50).chain(1_000..1_050)));
+        givers.into_iter().for_each(|giver| giver.join().unwrap());
+        sender.try_send(1).unwrap();
+        sender.try_send(2).unwrap();
+        assert_eq!(sender.try_send(3), Err(TrySendError::Full(3)));
+        drop(receiver);
+        assert_eq!(sender.try_send(3), Err(TrySendError::Disconnected(3)));
+        assert_eq!(sender.send(3), Err(SendError(3)));
     }
 
     #[test]

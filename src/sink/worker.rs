@@ -2,10 +2,12 @@
 
 use std::io;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
+use std::sync::mpsc::{Receiver, TrySendError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
+
+use super::wait_free::{SharedSender, WaitFreeReceiver, wait_free};
 
 /// Maximum number of waiting jobs: a second in which every foot of a crowd causes an event.
 const QUEUE: usize = 1024;
@@ -17,7 +19,7 @@ const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub(crate) struct Worker<T> {
     /// `None` only while being dropped.
-    jobs: Option<SyncSender<T>>,
+    jobs: Option<SharedSender<T>>,
     /// Locked only in `drop`: several threads may share a worker.
     finished: Mutex<Receiver<()>>,
     thread: Option<JoinHandle<()>>,
@@ -26,19 +28,22 @@ pub(crate) struct Worker<T> {
 
 impl<T: Send + 'static> Worker<T> {
     /// Starts a thread that runs `work` until the jobs end; if `work` ends earlier, waiting jobs are dropped.
-    pub(crate) fn spawn(name: &str, work: impl FnOnce(&Receiver<T>) + Send + 'static) -> io::Result<Self> {
-        let (jobs, queue) = sync_channel(QUEUE);
+    pub(crate) fn spawn(
+        name: &str,
+        work: impl FnOnce(&mut WaitFreeReceiver<T>) + Send + 'static,
+    ) -> io::Result<Self> {
+        let (jobs, mut queue) = wait_free(QUEUE);
         let (finish, finished) = channel();
         let dropped = Arc::new(AtomicU64::new(0));
         let left = dropped.clone();
         let thread = Builder::new().name(name.into()).spawn(move || {
-            work(&queue);
+            work(&mut queue);
             left.fetch_add(queue.try_iter().count() as u64, Ordering::Relaxed);
             // The owner may have stopped waiting for the end.
             let _ = finish.send(());
         })?;
         let finished = Mutex::new(finished);
-        Ok(Self { jobs: Some(jobs), finished, thread: Some(thread), dropped })
+        Ok(Self { jobs: Some(SharedSender::new(jobs)), finished, thread: Some(thread), dropped })
     }
 
     /// Queues a job; false, and counted, if the queue is full or the thread has ended.
@@ -94,7 +99,7 @@ mod tests {
     #[test]
     fn everything_offered_is_done_before_the_end() {
         let (done, results) = channel();
-        let worker = Worker::spawn("test", move |jobs: &Receiver<u32>| {
+        let worker = Worker::spawn("test", move |jobs: &mut WaitFreeReceiver<u32>| {
             jobs.iter().for_each(|job| done.send(job).unwrap());
         })
         .unwrap();
@@ -106,7 +111,7 @@ mod tests {
     #[test]
     fn too_many_jobs_are_counted_and_never_wait() {
         let (go, gate) = channel::<()>();
-        let worker = Worker::spawn("test", move |jobs: &Receiver<u32>| {
+        let worker = Worker::spawn("test", move |jobs: &mut WaitFreeReceiver<u32>| {
             let _ = gate.recv();
             jobs.iter().for_each(drop);
         })

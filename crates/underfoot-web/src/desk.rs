@@ -8,6 +8,7 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema;
 use underfoot::serve::{FloorCommand, Server};
+use underfoot::sink::SharedSender;
 use underfoot::widget::WidgetId;
 use underfoot::wire::ControlMessage;
 use underfoot_sim::FeetTape;
@@ -23,7 +24,7 @@ pub(crate) struct PageDesk {
     pub(crate) choices: Vec<String>,
     pub(crate) own: OwnTexts,
     pub(crate) asked: Receiver<PreviewCommand>,
-    pub(crate) to_floor: SyncSender<FloorCommand>,
+    pub(crate) to_floor: SharedSender<FloorCommand>,
     pub(crate) layouts: SyncSender<LayoutNews>,
     pub(crate) notices: SyncSender<Notice>,
     /// Commands for which the floor had no room.

@@ -1,7 +1,7 @@
 //! The simulated floor of the page: one thread does all, a few milliseconds of the floor in each frame.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender};
 use std::time::Duration;
 
 use triple_buffer::triple_buffer;
@@ -11,7 +11,7 @@ use underfoot::recording::{Progress, Recording, Speed};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sink::{Fanout, Since, StereoSink};
+use underfoot::sink::{Fanout, SharedSender, Since, StereoSink, wait_free};
 use underfoot::source::{LinkFaults, SensorSource, TappedPackets};
 use underfoot::units::Instant;
 use underfoot_sim::{
@@ -127,7 +127,8 @@ impl PageFloor {
         let (feel, mut renderer) = renderer(RendererConfig::of(&floor, RATE));
         let scopes = renderer.scope().map(|scope| Box::new(SignalScopes::new(scope)) as Box<dyn ScopeFeed>);
         let (written, shown) = triple_buffer(&Snapshot::default());
-        let (to_floor, received) = sync_channel(COMMANDS_WAITING);
+        let (to_floor, received) = wait_free(COMMANDS_WAITING);
+        let to_floor = SharedSender::new(to_floor);
         let (layout, clicks) = (plan.layout.clone(), ClickWatch::default());
         let (reported, lines) = EventLines::new();
         let told = Fanout::new().with(ToWindow::new(events)).with(clicks.clone()).with(reported);

@@ -2,13 +2,13 @@
 //! does, and without threads.
 
 use std::sync::Arc;
-use std::sync::mpsc::{SyncSender, sync_channel};
 use std::time::Duration;
 
 use triple_buffer::{Input, Output, triple_buffer};
 use underfoot::engine::Snapshot;
 use underfoot::mirror::{Greeting, MirrorText, PolledMirror};
 use underfoot::serve::{FloorCommand, Server};
+use underfoot::sink::{SharedSender, wait_free};
 use underfoot::source::{PacketTap, TappedPackets};
 use underfoot_window::edit::Document;
 use underfoot_window::link::SharedLayout;
@@ -47,7 +47,7 @@ struct Run {
     server: Server,
     mirror: PolledMirror,
     snapshots: Output<Snapshot>,
-    commands: SyncSender<FloorCommand>,
+    commands: SharedSender<FloorCommand>,
     lag: Lag,
 }
 
@@ -56,7 +56,8 @@ impl Run {
         let (mirror, input) = PolledMirror::new(greeting, now);
         let input = tap.wrap(announced(input, window.layouts.clone(), LayoutCause::Served));
         let (written, snapshots) = triple_buffer(&Snapshot::default());
-        let (commands, received) = sync_channel(COMMANDS_WAITING);
+        let (commands, received) = wait_free(COMMANDS_WAITING);
+        let commands = SharedSender::new(commands);
         let mut server = Server::new(&greeting.floor, greeting.layout.clone(), greeting.method, input)
             .with_events(Box::new(ToWindow::new(window.events.clone())))
             .with_snapshots(written)

@@ -3,7 +3,6 @@
 use std::fs::{self, File};
 use std::path::Path;
 use std::sync::atomic::AtomicU64;
-use std::sync::mpsc::channel;
 
 use super::super::Recording;
 use super::super::kept::as_kept;
@@ -11,6 +10,7 @@ use super::super::writer::{Job, RecordingFile, RecordingHead};
 use super::build::{OURS, PAGE, Taken, entries, floor, plain, read};
 use crate::schema::{self, Kinds};
 use crate::sense::Method;
+use crate::sink::wait_free;
 use crate::source::log::LogEntry;
 use crate::units::Instant;
 
@@ -27,16 +27,17 @@ fn recorded(taken: &Taken, path: &Path) {
     let floor = schema::write_floor(&floor);
     let head = RecordingHead { floor: &floor, layout: &layout, method: Method::Tracker, begins: None };
     let file = RecordingFile::begin(File::create(path).unwrap(), path, head).unwrap();
-    let (jobs, queue) = channel();
+    let (mut jobs, mut queue) = wait_free(2 * taken.len());
     for batch in taken.chunks(20) {
-        jobs.send(Job::Entries(batch.iter().map(|(at, _, entry)| (*at, entry.clone())).collect())).unwrap();
+        let entries = batch.iter().map(|(at, _, entry)| (*at, entry.clone())).collect();
+        assert!(jobs.try_send(Job::Entries(entries)).is_ok());
         for (at, ..) in batch {
-            jobs.send(Job::Event(*at, line(*at))).unwrap();
+            assert!(jobs.try_send(Job::Event(*at, line(*at))).is_ok());
         }
     }
     drop(jobs);
     let lost = AtomicU64::new(0);
-    file.write_all(&queue, &lost);
+    file.write_all(&mut queue, &lost);
     assert_eq!(lost.into_inner(), 0);
 }
 

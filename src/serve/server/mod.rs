@@ -15,7 +15,7 @@ mod sensors;
 use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender};
+use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
 use tracing::debug;
@@ -36,7 +36,7 @@ use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::sense::{Assembler, BoardStatus, Method, Tare, TareOutcome};
 use crate::serve::{Neighbours, Refusal};
-use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report};
+use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report, WaitFreeReceiver};
 use crate::source::{FloorInput, Incoming, SensorSource, SourceError};
 use crate::units::{Instant, Newtons};
 use crate::wire::{ControlMessage, LinkCounters, Prefix};
@@ -100,7 +100,7 @@ pub struct Server {
     inbox: Inbox,
     assembler: Assembler,
     engine: Engine,
-    commands: Option<Receiver<FloorCommand>>,
+    commands: Option<WaitFreeReceiver<FloorCommand>>,
     /// Time at which commands were last polled.
     commands_looked: Instant,
     haptics: Haptics,
@@ -197,7 +197,7 @@ impl Server {
 
     /// Receives commands from `commands`.
     #[must_use]
-    pub fn with_commands(mut self, commands: Receiver<FloorCommand>) -> Self {
+    pub fn with_commands(mut self, commands: WaitFreeReceiver<FloorCommand>) -> Self {
         self.commands = Some(commands);
         self
     }
@@ -432,7 +432,7 @@ impl Server {
         }
         self.commands_looked = now;
         for _ in 0..MOST_AT_ONCE {
-            let Some(command) = self.commands.as_ref().and_then(|commands| commands.try_recv().ok()) else {
+            let Some(command) = self.commands.as_mut().and_then(WaitFreeReceiver::try_recv) else {
                 break;
             };
             match command {

@@ -9,14 +9,13 @@ use std::io::{self, Write};
 use std::mem::{Discriminant, discriminant};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant as HostInstant};
 
 use super::backlog::{Backlog, Gap, Worth};
 use super::crack_rate::CrackRateLimiter;
 use super::periodic::PeriodicSender;
 use super::worker::Worker;
-use super::{EventSink, Report, SinkError};
+use super::{EventSink, Report, SinkError, WaitFreeReceiver};
 use crate::units::Instant;
 use crate::widget::{EventKind, WidgetId};
 use crate::wire::LinkState;
@@ -228,7 +227,7 @@ impl EventSink for JsonSink {
     }
 }
 
-fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
+fn write_all(jobs: &mut WaitFreeReceiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
     let (mut is_told, mut is_torn) = (false, false);
     while let Ok(mut job) = jobs.recv() {
         loop {
@@ -236,7 +235,7 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
             let ended = if is_torn { out.write_all(b"\n") } else { Ok(()) };
             let mut written = ended.and_then(|()| write_line(&job, &mut out));
             let next = jobs.try_recv();
-            if next.is_err() {
+            if next.is_none() {
                 written = written.and_then(|()| out.flush());
             }
             is_torn = written.is_err();
@@ -247,8 +246,8 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
                 }
             }
             match next {
-                Ok(next) => job = next,
-                Err(_) => break,
+                Some(next) => job = next,
+                None => break,
             }
         }
     }

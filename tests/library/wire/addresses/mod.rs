@@ -5,7 +5,6 @@ mod requests;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::net::UdpSocket;
-use std::sync::mpsc;
 use std::time::Duration;
 
 use rand::{RngExt, SeedableRng};
@@ -20,7 +19,7 @@ use underfoot::outgoing::write_event;
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use underfoot::sense::Method;
 use underfoot::serve::{AddressEntry, Argument, MessageDirection, Reference, Server};
-use underfoot::sink::SilentSink;
+use underfoot::sink::{SharedSender, SilentSink, wait_free};
 use underfoot::source::UdpSource;
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{Control, Indicator, Input, Value, WidgetEvent, WidgetId};
