@@ -77,7 +77,11 @@ impl<T> SharedSender<T> {
     pub fn try_send(&self, item: T) -> Result<(), TrySendError<T>> {
         let mut sender = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         sender.try_send(item).map_err(|item| {
-            if sender.items.is_abandoned() { TrySendError::Disconnected(item) } else { TrySendError::Full(item) }
+            if sender.items.is_abandoned() {
+                TrySendError::Disconnected(item)
+            } else {
+                TrySendError::Full(item)
+            }
         })
     }
 

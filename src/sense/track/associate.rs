@@ -101,7 +101,7 @@ impl Tracker {
                 }
                 None => {
                     let mut foot = Track::new(self.identity(centroid), force, centroid, 0.02);
-                    foot.touchdown = self.touchdown_at(centroid);
+                    foot.arrivals.touchdown = self.touchdown_at(centroid);
                     foot.tiles.push(position);
                     self.owner[position as usize] = self.tracks.len() as u32;
                     self.near.add(&foot);
@@ -179,8 +179,8 @@ impl Tracker {
         let near = self.near.distances(place);
         let (_, existing) = near.filter(|&(distance, _)| distance < ASTRIDE_M).min_by(first_of_least)?;
         let existing = &self.tracks[existing];
-        (existing.is_slow() && !existing.shared)
-            .then_some(Touchdown { existing: existing.id, from: existing.rest_point })
+        (existing.is_slow() && !existing.company.shared)
+            .then_some(Touchdown { existing: existing.id, from: existing.stillness.rest_point })
     }
 }
 

@@ -20,7 +20,7 @@ impl Tracker {
         let heaviest = heaviest.fold(0.0, |most, force| if force > most { force } else { most });
         parallel::for_each(&mut empty_s, |which, empty_s| {
             let foot = &self.tracks[which];
-            let gone = if foot.shared {
+            let gone = if foot.company.shared {
                 self.is_empty(foot, tiles)
             } else {
                 foot.force() < RIM_SHARE * heaviest && self.is_rim(which)
@@ -32,7 +32,7 @@ impl Tracker {
             let foot = &mut self.tracks[which];
             foot.empty_s = empty_s;
             if empty_s >= FAINT_S {
-                for mate in self.mates.of(foot.group) {
+                for mate in self.mates.of(foot.company.group) {
                     self.tracks[mate].suppress_births();
                 }
             }
@@ -86,7 +86,7 @@ impl Tracker {
     /// starts no new track.
     fn transfer_tiles(&mut self, which: usize) {
         let gone = &self.tracks[which];
-        let mates = self.mates.of(gone.group).filter(|&mate| self.tracks[mate].empty_s < FAINT_S);
+        let mates = self.mates.of(gone.company.group).filter(|&mate| self.tracks[mate].empty_s < FAINT_S);
         let away_s = mates.map(|mate| (self.tracks[mate].centre().distance(gone.centre()), mate));
         // A load farther away than the length of a shoe belongs to none of them.
         let successor = away_s.filter(|&(distance, _)| distance < SHOE_M).min_by(first_of_least);
@@ -99,10 +99,10 @@ impl Tracker {
     /// cannot reach, and those whose other track has ended.
     pub(super) fn confirm_split(&mut self, tiles: &LoadedTiles) {
         for which in 0..self.tracks.len() {
-            let Some(from) = self.tracks[which].split_from else { continue };
+            let Some(from) = self.tracks[which].doubt.part_of else { continue };
             let other = self.tracks.iter().position(|track| track.id == from);
             if other.is_none_or(|other| self.is_apart(which, other, tiles.list())) {
-                self.tracks[which].split_from = None;
+                self.tracks[which].doubt.part_of = None;
             }
         }
     }
@@ -120,7 +120,7 @@ impl Tracker {
     /// The other feet of its group.
     fn mates(&self, foot: &Track) -> impl Iterator<Item = &Track> {
         let id = foot.id;
-        self.mates.of(foot.group).map(|mate| &*self.tracks[mate]).filter(move |mate| mate.id != id)
+        self.mates.of(foot.company.group).map(|mate| &*self.tracks[mate]).filter(move |mate| mate.id != id)
     }
 
     /// Whether foot `which` is only the rim of a heavy foot, on a tile that it pressed together with a foot that has
@@ -128,7 +128,7 @@ impl Tracker {
     fn is_rim(&self, which: usize) -> bool {
         let foot = &self.tracks[which];
         let (place, force) = (foot.centre(), foot.force());
-        foot.rest_point.distance(place).max(foot.landed.distance(place)) > FAR_M
+        foot.stillness.rest_point.distance(place).max(foot.step.landed.distance(place)) > FAR_M
             && self.near.others(which).any(|other| {
                 let other = &self.tracks[other];
                 force < RIM_SHARE * other.force() && other.centre().distance(place) < RIM_M

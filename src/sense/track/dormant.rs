@@ -33,26 +33,27 @@ impl Tracker {
         for which in 0..self.tracks.len() {
             let foot = &self.tracks[which];
             let Some((existing, strips)) = self.enough_without(foot, tiles) else {
-                if foot.enough_s != 0.0 {
-                    self.tracks[which].enough_s = 0.0;
+                if foot.doubt.enough_s != 0.0 {
+                    self.tracks[which].doubt.enough_s = 0.0;
                 }
                 continue;
             };
             let foot = &mut self.tracks[which];
-            foot.enough_s += dt;
-            if foot.enough_s < ENOUGH_S {
+            foot.doubt.enough_s += dt;
+            if foot.doubt.enough_s < ENOUGH_S {
                 continue;
             }
             let mut foot = Track::clone(&self.tracks[which]);
             let existing = &mut self.tracks[existing];
-            foot.enough_s = 0.0;
+            foot.doubt.enough_s = 0.0;
             let from = existing.centre();
             existing.inherit(&std::mem::take(&mut foot.tiles));
             existing.stand(strips.force, strips.middle);
             existing.suppress_births();
-            existing.shared = false;
+            existing.company.shared = false;
             existing.restart_smoothing();
-            (existing.anchor, existing.anchored_s, existing.astray_s) = (existing.centre(), 0.0, 0.0);
+            (existing.stillness.anchor, existing.stillness.anchored_s, existing.stillness.astray_s) =
+                (existing.centre(), 0.0, 0.0);
             self.dormant.push(Dormant { existing: existing.id, from, foot, age: 0.0 });
             self.tracks.remove(which);
             break;
@@ -61,14 +62,14 @@ impl Tracker {
 
     /// The single foot that explains the tiles it shares with `foot`, if `foot` carries little.
     fn enough_without(&self, foot: &Track, tiles: &LoadedTiles) -> Option<(usize, Strips)> {
-        if !foot.shared {
+        if !foot.company.shared {
             return None;
         }
-        let mut mates = self.mates.of(foot.group).filter(|&mate| self.tracks[mate].id != foot.id);
+        let mut mates = self.mates.of(foot.company.group).filter(|&mate| self.tracks[mate].id != foot.id);
         let (Some(existing), None) = (mates.next(), mates.next()) else { return None };
         let other = &self.tracks[existing];
         if foot.force() > SLEEPS * (foot.force() + other.force())
-            || foot.age < other.age && foot.peak < 2.0 * foot.force()
+            || foot.age < other.age && foot.step.peak < 2.0 * foot.force()
         {
             return None;
         }
@@ -87,7 +88,7 @@ impl Tracker {
             dormant.age += dt;
             let existing = self.tracks.iter().position(|foot| foot.id == dormant.existing);
             let Some(existing) =
-                existing.filter(|&existing| !self.tracks[existing].shared && dormant.age < MOST_S)
+                existing.filter(|&existing| !self.tracks[existing].company.shared && dormant.age < MOST_S)
             else {
                 self.dormant.swap_remove(at);
                 continue;
@@ -113,7 +114,7 @@ impl Tracker {
             let Dormant { mut foot, from, .. } = self.dormant.swap_remove(at);
             let all = self.tracks[existing].force();
             foot.rest_again(share * all);
-            foot.touchdown = Some(Touchdown { existing: self.tracks[existing].id, from });
+            foot.arrivals.touchdown = Some(Touchdown { existing: self.tracks[existing].id, from });
             foot.age = 0.0;
             let other = &mut self.tracks[existing];
             other.rest_at((1.0 - share) * all, from);

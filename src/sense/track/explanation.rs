@@ -128,11 +128,13 @@ pub(super) enum Second {
     Pair(Pair),
 }
 
-impl Explanation {
-    pub(super) fn new() -> Self {
+impl Default for Explanation {
+    fn default() -> Self {
         Self { log_odds: ACCOMPANIED }
     }
+}
 
+impl Explanation {
     /// Updates the odds with the present loads of the track's tiles, at the usual distance `side` from each other.
     /// `alone`: whether it carries a person, with no other foot within a stride.
     ///
@@ -147,7 +149,7 @@ impl Explanation {
         elapsed: &Elapsed,
     ) -> Option<Second> {
         // A light contact far from all others is a tapping foot; a person stands on one foot or on two.
-        let lone = !foot.accompanied && (foot.bears() || seen.force > foot.body_n);
+        let lone = !foot.company.accompanied && (foot.bears() || seen.force > foot.step.body_n);
         let prior = if lone { LONE } else { ACCOMPANIED };
         let tiles = foot.tiles.as_slice().iter().map(|&position| &list[position as usize]);
         let (mut evidence, mut spread, mut spread_evidence) = (prior, Spread::default(), 0.0);
@@ -158,22 +160,22 @@ impl Explanation {
         }
         let mut shift = DVec2::ZERO;
         let mut pair = None;
-        if foot.anchored_s > 0.0 && alone {
-            pair = foot.fitted.pair;
+        if foot.stillness.anchored_s > 0.0 && alone {
+            pair = foot.arrivals.fitted.pair;
             if let Some(pair) = &pair {
-                let least = if foot.anchored_s > STANDS_S { ONE_SOLE } else { ONE_STEP };
+                let least = if foot.stillness.anchored_s > STANDS_S { ONE_SOLE } else { ONE_STEP };
                 let soles = (pair.log_odds - least).clamp(-MOST, MOST);
                 evidence += soles.max(spread_evidence) - spread_evidence;
             }
-            if foot.anchored_s > STANDS_S {
+            if foot.stillness.anchored_s > STANDS_S {
                 let (standing, after_s) =
-                    if foot.accompanied { (STOPPED, STOPPED_S) } else { (STANDING, STANDING_S) };
-                evidence += standing * ((foot.anchored_s - STANDS_S) / after_s).min(1.0);
-                shift = seen.middle - foot.anchor;
+                    if foot.company.accompanied { (STOPPED, STOPPED_S) } else { (STANDING, STANDING_S) };
+                evidence += standing * ((foot.stillness.anchored_s - STANDS_S) / after_s).min(1.0);
+                shift = seen.middle - foot.stillness.anchor;
                 let deviation = SWAY_M.hypot(0.5 * centroid_sigma(tiles, seen.force, side));
                 evidence += (0.5 * (shift.length() / deviation).powi(2)).min(MOST);
             } else {
-                evidence -= (ROLL * (foot.travel / ROLL_M).powi(2)).min(ROLL);
+                evidence -= (ROLL * (foot.step.travel / ROLL_M).powi(2)).min(ROLL);
             }
         }
         let weight = 1.0 - elapsed.explanation;

@@ -90,7 +90,7 @@ impl Tracker {
         let mut count = 0;
         self.group_numbers.clear();
         for &which in &self.members {
-            let first = self.tracks[which as usize].group;
+            let first = self.tracks[which as usize].company.group;
             let known = if first == which { None } else { self.members.binary_search(&first).ok() };
             let number = known.map_or(count, |at| self.group_numbers[at]);
             count = count.max(number + 1);
@@ -103,11 +103,11 @@ impl Tracker {
 impl Track {
     /// Notes that it shares tiles with other feet.
     fn join(&mut self, beyond_filter: bool) {
-        if !self.shared {
+        if !self.company.shared {
             self.keep_shape();
         }
-        self.shared = true;
-        self.beyond_filter = beyond_filter;
+        self.company.shared = true;
+        self.company.beyond_filter = beyond_filter;
     }
 }
 
@@ -121,13 +121,13 @@ fn place_touchdown(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells) ->
     } else {
         return false;
     };
-    let Some(touchdown) = stepping.touchdown else { return false };
+    let Some(touchdown) = stepping.arrivals.touchdown else { return false };
     let both = existing.tiles_with(stepping);
     let tiles = both.iter().map(|&position| &list[position as usize]);
     let strips = Strips::of(tiles.clone(), cells.pitch);
     let sigma = centroid_sigma(tiles, strips.force, cells.side());
     // If the filter's estimate of both feet has not fitted for some time, the touchdown is estimated again.
-    if !existing.ambiguous
+    if !existing.doubt.ambiguous
         && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, sigma, list, cells)
     {
         existing.hold_at(touchdown.from);
@@ -155,7 +155,7 @@ impl GroupEstimator {
         joint.clear();
         group.iter().for_each(|foot| joint.add(foot));
         for (first, a) in group.iter().enumerate() {
-            let (estimator, from) = a.links_from;
+            let (estimator, from) = a.company.links_from;
             let links = links.get(estimator).and_then(|links| links.get(from..)).unwrap_or_default();
             for (second, b) in group.iter().enumerate().skip(first + 1) {
                 let mut links = links.iter().take_while(|link| link.first == a.id);
@@ -184,10 +184,10 @@ impl GroupEstimator {
         let weight = 1.0 - elapsed.nis;
         for (which, foot) in group.iter_mut().enumerate() {
             joint.take(which, foot);
-            foot.nis += weight * (nis - foot.nis);
+            foot.doubt.nis += weight * (nis - foot.doubt.nis);
         }
         for first in 0..group.len() {
-            group[first].links_from = (self.number, self.links.len());
+            group[first].company.links_from = (self.number, self.links.len());
             for second in first + 1..group.len() {
                 self.links.push(Link {
                     first: group[first].id,

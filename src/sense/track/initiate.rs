@@ -59,7 +59,7 @@ impl Tracker {
             foot.look_for_second(which, near, tiles, cells, elapsed);
         });
         for which in 0..self.tracks.len() {
-            let Some(candidate) = self.tracks[which].candidate.take_if(|_| true) else { continue };
+            let Some(candidate) = self.tracks[which].arrivals.candidate.take_if(|_| true) else { continue };
             let foot = &self.tracks[which];
             // A track that it may be a part of has its centre of pressure within a stride.
             let others = self.near.around(candidate.place).filter(|&other| other != which);
@@ -85,11 +85,11 @@ impl Tracker {
             if kept.distance(candidate.place) < APART_M {
                 continue;
             }
-            let stood = foot.anchored_s >= STANDS_S && foot.bears();
+            let stood = foot.stillness.anchored_s >= STANDS_S && foot.bears();
             let from = foot.id;
             let touchdown = (stood || foot.is_slow()).then_some(Touchdown {
                 existing: from,
-                from: if stood { foot.anchor } else { foot.rest_point },
+                from: if stood { foot.stillness.anchor } else { foot.stillness.rest_point },
             });
             let mut new_track = Track::new(
                 self.identity(candidate.place),
@@ -99,8 +99,8 @@ impl Tracker {
             );
             new_track.covariance[FORCE][FORCE] = (0.3 * candidate.force + 5.0).powi(2);
             new_track.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
-            new_track.touchdown = touchdown;
-            new_track.split_from = Some(from);
+            new_track.arrivals.touchdown = touchdown;
+            new_track.doubt.part_of = Some(from);
             new_track.reach(tiles, &self.cells);
             for &position in &candidate.tiles {
                 if !new_track.tiles.contains(&position) {
@@ -117,13 +117,13 @@ impl Tracker {
                     if keeps.is_fitted {
                         let (places, deviations) =
                             ([candidate.place, keeps.place], [candidate.deviation, keeps.deviation]);
-                        new_track.stance = Some(Stance::new(from, places, deviations));
+                        new_track.arrivals.stance = Some(Stance::new(from, places, deviations));
                         foot.forget_shape();
                         foot.outline = FanExtents::new(keeps.place);
                     }
                     for foot in [foot, &mut new_track] {
-                        foot.landed_together = true;
-                        foot.mean_speed = SHARED_SPEED_M_S;
+                        foot.company.landed_together = true;
+                        foot.stillness.mean_speed = SHARED_SPEED_M_S;
                     }
                 } else {
                     self.tracks[which].back_to_prediction();
@@ -146,14 +146,14 @@ impl Track {
         cells: &Cells,
         elapsed: &Elapsed,
     ) {
-        if self.shared {
+        if self.company.shared {
             return;
         }
         let list = tiles.list();
         // A sensor whose quality changes moves the tile's reading without any foot.
         let own = self.tiles.as_slice();
         let quality = own.iter().map(|&position| list[position as usize].quality).max();
-        if quality.is_some_and(|quality| quality != self.quality) {
+        if quality.is_some_and(|quality| quality != self.sensors.quality) {
             // The estimate for a sensor that is lost or returns is blended in gradually.
             let lasts = own.iter().any(|&position| !list[position as usize].is_settled());
             self.on_quality_change(quality.unwrap_or_default(), lasts);
@@ -164,7 +164,7 @@ impl Track {
         let added = if self.age > LANDS_S { self.added(list, cells) } else { None };
         // Taken out in every frame, so an absent candidate needs no write: most feet have none.
         if let Some(candidate) = added.or(second) {
-            self.candidate = Some(candidate);
+            self.arrivals.candidate = Some(candidate);
         }
     }
 
@@ -219,19 +219,19 @@ impl Track {
     ) -> Option<CandidateTrack> {
         let list = tiles.list();
         let seen = Whole::of(self.tiles.as_slice().iter().map(|&position| &list[position as usize]));
-        let alone = self.anchored_s > 0.0 && seen.force > self.body_n && alone();
+        let alone = self.stillness.anchored_s > 0.0 && seen.force > self.step.body_n && alone();
         // A foot that has had another one near it is one foot.
-        let lands = !self.accompanied && self.age < FLAT_S;
-        if !alone || self.accompanied || !lands && self.anchored_s < STANDS_S {
-            self.fitted = Fitted::default();
-        } else if self.fitted.refits.is_due_after(elapsed.dt) {
+        let lands = !self.company.accompanied && self.age < FLAT_S;
+        if !alone || self.company.accompanied || !lands && self.stillness.anchored_s < STANDS_S {
+            self.arrivals.fitted = Fitted::default();
+        } else if self.arrivals.fitted.refits.is_due_after(elapsed.dt) {
             let loads = LoadsAround::of(seen.middle, &self.tiles, tiles, cells);
-            self.fitted.pair = Pair::of(&loads, seen.middle, seen.force);
+            self.arrivals.fitted.pair = Pair::of(&loads, seen.middle, seen.force);
         }
-        let mut explanation = self.explanation;
+        let mut explanation = self.arrivals.explanation;
         let second = explanation.update(self, &seen, list, cells.side(), alone, elapsed);
-        self.explanation = explanation;
-        if self.suppressed_s > 0.0 {
+        self.arrivals.explanation = explanation;
+        if self.sensors.suppressed_s > 0.0 {
             return None;
         }
         let second = match second? {
@@ -246,7 +246,7 @@ impl Track {
         match second {
             Second::Shift(shift) => Some(CandidateTrack {
                 force: seen.force * shift.length() / STANCE_M,
-                place: self.anchor + shift.normalize() * STANCE_M,
+                place: self.stillness.anchor + shift.normalize() * STANCE_M,
                 deviation: GUESSED_M,
                 ..CandidateTrack::default()
             }),
@@ -263,8 +263,11 @@ impl Track {
                     side.1 += at * force;
                 }
                 let centre = |side: usize| sides[side].1 / sides[side].0;
-                let new =
-                    if centre(0).distance(self.landed) > centre(1).distance(self.landed) { 0 } else { 1 };
+                let new = if centre(0).distance(self.step.landed) > centre(1).distance(self.step.landed) {
+                    0
+                } else {
+                    1
+                };
                 let (keep, place) = (centre(1 - new), centre(new));
                 let mut candidate = CandidateTrack {
                     force: sides[new].0,
@@ -281,7 +284,7 @@ impl Track {
                 Some(candidate)
             }
             Second::Pair(pair) => {
-                let away = pair.places.map(|place| place.distance_squared(self.landed));
+                let away = pair.places.map(|place| place.distance_squared(self.step.landed));
                 let (keep, new) = if away[0] < away[1] { (0, 1) } else { (1, 0) };
                 Some(CandidateTrack {
                     force: pair.forces[new],

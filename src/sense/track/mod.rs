@@ -34,6 +34,7 @@ mod outline;
 mod output;
 mod pair;
 mod params;
+mod parts;
 mod patch;
 mod reach;
 mod refits;
@@ -270,14 +271,14 @@ impl Tracker {
         parallel::for_each(&mut self.tracks, |which, foot| {
             let has_partner = if foot.age < LANDING_S {
                 let body_n = near.body_n_of_partner(which);
-                foot.body_n = body_n.unwrap_or(foot.body_n);
+                foot.step.body_n = body_n.unwrap_or(foot.step.body_n);
                 body_n.is_some()
             } else {
                 near.has_partner(which)
             };
             if has_partner {
-                foot.partner_s = 0.0;
-                foot.accompanied = true;
+                foot.company.partner_s = 0.0;
+                foot.company.accompanied = true;
             }
             foot.keep_noticed_tiles(tiles);
         });
@@ -299,7 +300,7 @@ impl Tracker {
     /// Measures the feet that are alone on their tiles and estimates the others.
     fn estimate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         parallel::for_each(&mut self.tracks, |_, foot| {
-            if !foot.crowded {
+            if !foot.company.crowded {
                 foot.measure(tiles.list(), elapsed);
             }
         });
@@ -319,7 +320,7 @@ impl Track {
         self.smooth(elapsed);
         self.roll(elapsed);
         self.note_outline(list, elapsed);
-        if !self.shared {
+        if !self.company.shared {
             self.learn_shape(list, cells.pitch, elapsed);
         }
         self.learn_loads(list, cells, elapsed);

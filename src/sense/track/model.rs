@@ -21,7 +21,7 @@ pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], elapsed: &Elapsed
     for (which, foot) in group.iter().enumerate() {
         let at = which * STATES;
         // A foot that has stood still is expected to go on standing still.
-        let speed = (2.0 * foot.mean_speed).clamp(SPEED_LEAST_M_S, SPEED_M_S);
+        let speed = (2.0 * foot.stillness.mean_speed).clamp(SPEED_LEAST_M_S, SPEED_M_S);
         for (value, fade_s, decay, rate) in [
             (FORCE, FORCE_FADE_S, elapsed.force_rate, FORCE_RATE_N_S),
             (EAST, PLACE_FADE_S, elapsed.velocity, speed),
@@ -32,11 +32,15 @@ pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], elapsed: &Elapsed
         if foot.age > FLAT_S && dt > 0.0 {
             // A flat foot strays about its rest point, in the long run by no more than `sway_m`.
             let spread = 2.0 * speed * speed * PLACE_FADE_S * dt;
-            let away_s = DVec2::new(joint.x[at + EAST], joint.x[at + NORTH]).distance(foot.rest_point);
+            let away_s =
+                DVec2::new(joint.x[at + EAST], joint.x[at + NORTH]).distance(foot.stillness.rest_point);
             let stood = group.iter().all(|other| other.age <= foot.age);
-            let held = stood && away_s > HELD * foot.sway_m;
-            let variance = if held { foot.sway_m.powi(2) } else { foot.sway_m.powi(4) / spread };
-            for (place, rest_point) in [(EAST, foot.rest_point.x), (NORTH, foot.rest_point.y)] {
+            let held = stood && away_s > HELD * foot.stillness.sway_m;
+            let variance =
+                if held { foot.stillness.sway_m.powi(2) } else { foot.stillness.sway_m.powi(4) / spread };
+            for (place, rest_point) in
+                [(EAST, foot.stillness.rest_point.x), (NORTH, foot.stillness.rest_point.y)]
+            {
                 joint.observe(rest_point - joint.x[at + place], &[(at + place, 1.0)], variance);
             }
         }

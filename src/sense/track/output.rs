@@ -56,7 +56,7 @@ impl Dormant {
         contact.force = Newtons((REPORTED * existing.force()) as f32);
         contact.velocity = Vec2::ZERO;
         contact.ambiguous = true;
-        contact.split = self.foot.split_from.is_some();
+        contact.split = self.foot.doubt.part_of.is_some();
         contact.covariance = Covariance::isotropic(PLACE_M as f32);
         contact.tiles.extend(existing.tiles.iter().map(|&position| {
             let tile = &list[position as usize];
@@ -69,13 +69,15 @@ impl Dormant {
 impl Track {
     /// Updates whether the foot is ambiguous.
     pub(super) fn judge(&mut self) {
-        if !self.shared {
-            (self.nis, self.misfit) = (0.0, 0.0);
+        if !self.company.shared {
+            (self.doubt.nis, self.doubt.misfit) = (0.0, 0.0);
         }
-        self.ambiguous = if self.shared {
-            self.beyond_filter || self.contested_s > 0.0 || self.inflated() > AMBIGUOUS_M * AMBIGUOUS_M
+        self.doubt.ambiguous = if self.company.shared {
+            self.company.beyond_filter
+                || self.doubt.contested_s > 0.0
+                || self.inflated() > AMBIGUOUS_M * AMBIGUOUS_M
         } else {
-            self.explanation.is_open()
+            self.arrivals.explanation.is_open()
         };
     }
 
@@ -87,7 +89,7 @@ impl Track {
     /// Covariance inflation 1 + `INFLATION` · NIS, limited by [`LOST_M`]: repeated innovations show that the filter's
     /// model of the feet is wrong.
     fn inflation(&self) -> f64 {
-        (1.0 + INFLATION * self.nis).min(LOST_M * LOST_M / self.variance()).max(1.0)
+        (1.0 + INFLATION * self.doubt.nis).min(LOST_M * LOST_M / self.variance()).max(1.0)
     }
 
     fn inflated(&self) -> f64 {
@@ -108,11 +110,12 @@ impl Track {
         contact.velocity = self.velocity().as_vec2();
         // If the loads do not fit two feet of which one was assumed still, both places are wrong. The contact reports
         // that; the filter continues with its own covariance.
-        let strayed_m = if self.misfit > FITS { STRAYED_M * (self.misfit - FITS).sqrt().sqrt() } else { 0.0 };
-        contact.split = self.split_from.is_some();
-        contact.ambiguous = self.ambiguous || contact.split;
+        let strayed_m =
+            if self.doubt.misfit > FITS { STRAYED_M * (self.doubt.misfit - FITS).sqrt().sqrt() } else { 0.0 };
+        contact.split = self.doubt.part_of.is_some();
+        contact.ambiguous = self.doubt.ambiguous || contact.split;
         let mut covariance = Covariance::default();
-        if self.shared {
+        if self.company.shared {
             contact.ambiguous |= self.inflated().sqrt().hypot(strayed_m) > AMBIGUOUS_M;
             let inflation = self.inflation();
             covariance = Covariance {
@@ -128,7 +131,7 @@ impl Track {
             let tile = &list[position as usize];
             let mut share = 1.0;
             let mut load = all_of(tile);
-            if self.shared {
+            if self.company.shared {
                 share = self.divide(tile, cells, &mut load);
                 // The gain errors under the other feet are known in part, from when they stood alone.
                 share += (1.0 - share) * OTHERS_MISREAD;
@@ -148,11 +151,11 @@ impl Track {
             }));
         }
         covariance += Covariance::isotropic(strayed_m as f32);
-        if self.landed_together {
+        if self.company.landed_together {
             covariance += Covariance::isotropic(TOGETHER_M);
         }
-        if !self.shared {
-            covariance += Covariance::isotropic(self.explanation.hidden_m() as f32);
+        if !self.company.shared {
+            covariance += Covariance::isotropic(self.arrivals.explanation.hidden_m() as f32);
         }
         contact.covariance = covariance;
         contact.finish();

@@ -34,7 +34,7 @@ impl Track {
     pub(super) fn note_outline(&mut self, list: &[LoadedTile], elapsed: &Elapsed) {
         let centre = self.centre();
         let mut pressed: ArrayVec<DVec2, MOST_NOTED> = ArrayVec::new();
-        if !self.shared {
+        if !self.company.shared {
             let tiles = self.tiles.as_slice();
             // On a single tile, the only point is the centre itself.
             let several = if tiles.len() > 1 { tiles } else { &[] };
@@ -63,7 +63,7 @@ impl Track {
     /// Distance of a light load at `point` from the rim of this foot (m); negative within, infinite for a heavy load.
     pub(super) fn rims(&self, point: DVec2, force: f64) -> f64 {
         let ahead = (point - self.centre()).dot(self.velocity()) > AHEAD_M_S * point.distance(self.centre());
-        let (share, reach) = if self.shared {
+        let (share, reach) = if self.company.shared {
             RIM_OF_SHARED
         } else if ahead && self.force() < SLIDING_N {
             RIM_AHEAD
@@ -79,7 +79,7 @@ impl Track {
         let reach = self.half() * HALVES + BEYOND_M;
         let mut low = cell_of(self.centre() - reach, cells.pitch);
         let mut high = cell_of(self.centre() + reach, cells.pitch);
-        let (borne_low, borne_high) = self.borne;
+        let (borne_low, borne_high) = self.shape.borne;
         let (known_low, known_high) = (low.min(borne_low), high.max(borne_high));
         // Where it was alone, it also presses the tiles that it pressed then.
         if (known_low, known_high) != (low, high) && self.is_shape_known() {
@@ -95,14 +95,14 @@ impl Track {
     /// Records the range of columns and rows on which it showed load while it was alone.
     pub(super) fn note_borne(&mut self) {
         let (mut low, mut high) = NOTHING_BORNE;
-        for residual in self.residuals.iter().filter(|residual| residual.share > BORNE) {
+        for residual in self.shape.residuals.iter().filter(|residual| residual.share > BORNE) {
             let (low, high) = match residual.axis {
                 StripAxis::East => (&mut low.x, &mut high.x),
                 StripAxis::North => (&mut low.y, &mut high.y),
             };
             (*low, *high) = ((*low).min(residual.number), (*high).max(residual.number));
         }
-        self.borne = (low, high);
+        self.shape.borne = (low, high);
     }
 }
 

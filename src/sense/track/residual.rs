@@ -51,9 +51,9 @@ impl Track {
 
     /// Learns the difference between the foot, alone on its tiles, and its model patch, once per learning interval.
     pub(super) fn learn_shape(&mut self, list: &[LoadedTile], pitch: DVec2, elapsed: &Elapsed) {
-        self.unlearnt_s += elapsed.dt;
-        if self.alone_at.is_none() || self.unlearnt_s >= LEARN_EVERY_S - 0.5 * elapsed.dt {
-            let fade = elapsed.shape_fade(std::mem::take(&mut self.unlearnt_s));
+        self.shape.unlearnt_s += elapsed.dt;
+        if self.shape.alone_at.is_none() || self.shape.unlearnt_s >= LEARN_EVERY_S - 0.5 * elapsed.dt {
+            let fade = elapsed.shape_fade(std::mem::take(&mut self.shape.unlearnt_s));
             self.learn_residuals(list, pitch, &fade);
             self.note_borne();
         }
@@ -75,8 +75,9 @@ impl Track {
         self.learn_halves(&strips, pitch, fade);
         let half = self.half();
         // Slow enough that the first touch of a new foot, not yet detected, has hardly any effect.
-        let weight = if self.alone_at.is_none() || self.age < RESIDUAL_S { 1.0 } else { 1.0 - fade.residual };
-        for residual in &mut self.residuals {
+        let weight =
+            if self.shape.alone_at.is_none() || self.age < RESIDUAL_S { 1.0 } else { 1.0 - fade.residual };
+        for residual in &mut self.shape.residuals {
             residual.seen = false;
         }
         for strip in &strips.strips {
@@ -87,25 +88,25 @@ impl Track {
                 strip.cross / strips.force,
             ];
             let same = |residual: &Residual| residual.axis == strip.axis && residual.number == strip.number;
-            let position = self.residuals.iter().position(same).unwrap_or_else(|| {
-                self.residuals.push(Residual::none(strip.axis, strip.number));
-                self.residuals.len() - 1
+            let position = self.shape.residuals.iter().position(same).unwrap_or_else(|| {
+                self.shape.residuals.push(Residual::none(strip.axis, strip.number));
+                self.shape.residuals.len() - 1
             });
-            self.residuals[position].learn(now, weight);
+            self.shape.residuals[position].learn(now, weight);
         }
-        self.residuals.retain(|residual| residual.seen);
+        self.shape.residuals.retain(|residual| residual.seen);
         if self.age > TOUCHES_S {
-            self.alone_s += fade.dt;
+            self.shape.alone_s += fade.dt;
         }
-        let before = self.alone_at.unwrap_or(centre);
-        self.alone_at = Some(before + (centre - before) * weight);
+        let before = self.shape.alone_at.unwrap_or(centre);
+        self.shape.alone_at = Some(before + (centre - before) * weight);
     }
 
     /// Fixes the shape of a foot that was alone until now: its shape residuals describe the difference from the
     /// model, at any half widths.
     pub(super) fn keep_shape(&mut self) {
-        if self.alone_at.is_some() {
-            let unknown = (-self.alone_s / KNOWN_S).exp();
+        if self.shape.alone_at.is_some() {
+            let unknown = (-self.shape.alone_s / KNOWN_S).exp();
             let deviation = 0.0005 + 0.03 * unknown;
             for half in [HALF_EAST, HALF_NORTH] {
                 self.state[half] += unknown * (HALF_REST - self.state[half]);
@@ -117,8 +118,8 @@ impl Track {
 
     /// Forgets its shape, which was that of two feet.
     pub(super) fn forget_shape(&mut self) {
-        (self.alone_at, self.alone_s) = (None, 0.0);
-        self.residuals.clear();
+        (self.shape.alone_at, self.shape.alone_s) = (None, 0.0);
+        self.shape.residuals.clear();
         self.note_borne();
         for half in [HALF_EAST, HALF_NORTH] {
             self.state[half] = HALF_REST;
@@ -134,22 +135,22 @@ impl Track {
 
     /// The same if its centre of pressure were at `centre`.
     pub(super) fn residual_weight_at(&self, centre: DVec2) -> f64 {
-        self.alone_at.map_or(0.0, |place| {
+        self.shape.alone_at.map_or(0.0, |place| {
             let moved = place.distance(centre) / 0.05;
-            (-moved * moved).exp() * (1.0 - (-self.alone_s / KNOWN_S).exp())
+            (-moved * moved).exp() * (1.0 - (-self.shape.alone_s / KNOWN_S).exp())
         })
     }
 
     /// Whether the weight of its shape residuals suffices to list its tiles. Most feet need no exponential for that.
     pub(super) fn is_shape_known(&self) -> bool {
         const { assert!(KNOWN > 0.3 - 1e-9 && KNOWN < 0.3 + 1e-9, "between the bounds below") };
-        let Some(place) = self.alone_at else { return false };
+        let Some(place) = self.shape.alone_at else { return false };
         let moved = place.distance_squared(self.centre()) / (0.05 * 0.05);
         // exp(-1.21) < 0.3, and exp(-0.7) (1 - exp(-1)) > 0.31.
         if moved > 1.21 {
             return false;
         }
-        if moved < 0.7 && self.alone_s > KNOWN_S {
+        if moved < 0.7 && self.shape.alone_s > KNOWN_S {
             return true;
         }
         self.residual_weight() > KNOWN
@@ -157,7 +158,8 @@ impl Track {
 
     /// Its shape residual on one strip, times `strength`; zero without one.
     pub(super) fn residual_at(&self, axis: StripAxis, number: i32, strength: f64) -> Residual {
-        self.residuals
+        self.shape
+            .residuals
             .iter()
             .find(|residual| residual.axis == axis && residual.number == number)
             .map(|residual| Residual {

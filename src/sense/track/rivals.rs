@@ -92,14 +92,14 @@ pub(super) fn compare(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells,
     if turn(first.age) == turn(first.age - elapsed.dt) {
         return;
     }
-    let before = first.lead;
+    let before = first.doubt.lead;
     let mut lead = Lead { pause: before.pause.saturating_sub(1), ..Lead::default() };
     let mut best = None;
     if lead.pause == 0 && group.iter().any(|foot| foot.is_doubtful()) {
         // One that leaves every foot where the filter has it is the filter's own.
         best = Explanations::of(group, list, cells).best().filter(|(rival, _)| rival.differs_from(group));
     }
-    if best.is_some() || group.iter().any(|foot| foot.misfit > output::FITS) {
+    if best.is_some() || group.iter().any(|foot| foot.doubt.misfit > output::FITS) {
         doubt_light_feet(group);
     }
     if let Some((rival, _)) = &best {
@@ -107,12 +107,12 @@ pub(super) fn compare(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells,
         (lead.rival, lead.times) = (Some(*rival), if again { before.times.saturating_add(1) } else { 1 });
         for (which, foot) in group.iter_mut().enumerate() {
             if foot.is_elsewhere_under(*rival, which) {
-                foot.contested_s = CONTESTED_S;
+                foot.doubt.contested_s = CONTESTED_S;
             }
         }
     }
     let wins = lead.times >= TIMES;
-    group[0].lead = if wins { Lead { pause: PAUSE, ..Lead::default() } } else { lead };
+    group[0].doubt.lead = if wins { Lead { pause: PAUSE, ..Lead::default() } } else { lead };
     if let Some((rival, fit)) = best.filter(|_| wins) {
         adopt(group, rival, &fit, list);
     }
@@ -124,13 +124,15 @@ fn doubt_light_feet(group: &mut Group<'_>) {
     let Some((heaviest, place)) = heaviest.map(|foot| (foot.id, foot.centre())) else { return };
     for foot in group.iter_mut().filter(|foot| foot.id != heaviest) {
         if foot.centre().distance(place) < OWN_M {
-            foot.split_from.get_or_insert(heaviest);
+            foot.doubt.part_of.get_or_insert(heaviest);
         }
     }
 }
 
 fn may_have_rivals(group: &Group<'_>) -> bool {
-    let flat = |foot: &&mut Track| foot.age > FLAT_S && !foot.beyond_filter && foot.suppressed_s <= 0.0;
+    let flat = |foot: &&mut Track| {
+        foot.age > FLAT_S && !foot.company.beyond_filter && foot.sensors.suppressed_s <= 0.0
+    };
     (2..=MOST).contains(&group.len()) && group.iter().all(flat)
 }
 
@@ -139,8 +141,8 @@ impl Track {
     fn place_under(&self, rival: Rival, which: usize) -> DVec2 {
         match rival {
             Rival::Moved(moved, place) | Rival::Without(_, moved, place) if moved == which => place,
-            Rival::Together(way) => self.rest_point + way,
-            _ => self.rest_point,
+            Rival::Together(way) => self.stillness.rest_point + way,
+            _ => self.stillness.rest_point,
         }
     }
 
@@ -150,19 +152,19 @@ impl Track {
 
     /// Distance of its centre of pressure from its rest point (m).
     fn strayed(&self) -> f64 {
-        self.centre().distance(self.rest_point)
+        self.centre().distance(self.stillness.rest_point)
     }
 
     /// Whether the explanation of its loads has to compete.
     fn is_doubtful(&self) -> bool {
-        self.strayed() > STRAYED_M || self.split_from.is_some() || self.misfit > output::FITS
+        self.strayed() > STRAYED_M || self.doubt.part_of.is_some() || self.doubt.misfit > output::FITS
     }
 
     /// Whether its shoe, where it stood, leaves room for another foot at `place`. The outline of a foot that has
     /// strayed may be that of both.
     fn leaves_free(&self, place: DVec2) -> bool {
         if self.strayed() > STRAYED_M {
-            self.rest_point.distance(place) > AROUND_M
+            self.stillness.rest_point.distance(place) > AROUND_M
         } else {
             self.beyond(place) > 0.0
         }
@@ -205,7 +207,7 @@ impl<'a> Explanations<'a> {
     fn best(&self) -> Option<(Rival, Fit)> {
         let mut best = Best { limit: self.settled()? - AHEAD, found: None };
         let home: ArrayVec<Part, MOST_PARTS> =
-            self.feet.iter().map(|foot| self.part(foot, foot.rest_point, 0.0)).collect();
+            self.feet.iter().map(|foot| self.part(foot, foot.stillness.rest_point, 0.0)).collect();
         let have_room = self.have_room();
         for way in ways(STEPS_AROUND).map(|steps| steps * AROUND_STEP_M) {
             self.drop_splits(&home, way, &mut best);
@@ -223,14 +225,19 @@ impl<'a> Explanations<'a> {
     /// ground for an explanation.
     fn have_room(&self) -> bool {
         self.feet.iter().enumerate().all(|(which, foot)| {
-            self.feet[..which].iter().all(|other| other.rest_point.distance(foot.rest_point) > APART_M)
+            self.feet[..which]
+                .iter()
+                .all(|other| other.stillness.rest_point.distance(foot.stillness.rest_point) > APART_M)
         })
     }
 
     /// Considers explanations in which one foot, or all of them, have moved `way` from their rest points.
     fn move_feet(&self, home: &ArrayVec<Part, MOST_PARTS>, way: DVec2, best: &mut Best) {
-        let all: ArrayVec<Part, MOST_PARTS> =
-            self.feet.iter().map(|foot| self.part(foot, foot.rest_point + way, AROUND_STEP_M)).collect();
+        let all: ArrayVec<Part, MOST_PARTS> = self
+            .feet
+            .iter()
+            .map(|foot| self.part(foot, foot.stillness.rest_point + way, AROUND_STEP_M))
+            .collect();
         for (which, moved) in all.iter().enumerate() {
             let mut parts = home.clone();
             parts[which] = moved.clone();
@@ -249,7 +256,8 @@ impl<'a> Explanations<'a> {
     fn drop_splits(&self, home: &ArrayVec<Part, MOST_PARTS>, way: DVec2, best: &mut Best) {
         for (gone, from, apart) in self.splits() {
             let mut parts = home.clone();
-            parts[from] = self.part(self.feet[from], self.feet[from].rest_point + way, AROUND_STEP_M);
+            parts[from] =
+                self.part(self.feet[from], self.feet[from].stillness.rest_point + way, AROUND_STEP_M);
             parts[gone] = parts[gone].clone().absent();
             if let Some(fit) = self.loads.fit(&parts) {
                 let off = self.loads.off(&parts, &fit, fit.forces[from], AROUND_STEP_M);
@@ -291,7 +299,8 @@ impl<'a> Explanations<'a> {
     fn settled(&self) -> Option<f64> {
         let mut parts: ArrayVec<Part, MOST_PARTS> =
             self.feet.iter().map(|foot| self.part(foot, foot.centre(), AROUND_STEP_M)).collect();
-        let strayed = |foot: &Track, place: DVec2| (foot.rest_point.distance(place) / ROLLED_M).powi(2);
+        let strayed =
+            |foot: &Track, place: DVec2| (foot.stillness.rest_point.distance(place) / ROLLED_M).powi(2);
         let total = |parts: &[Part]| {
             let strayed = self.feet.iter().zip(parts).map(|(foot, part)| strayed(foot, part.place));
             self.loads.fit(parts).map(|fit| fit.cost + strayed.sum::<f64>())
@@ -313,7 +322,7 @@ impl<'a> Explanations<'a> {
     /// Tracks that may be parts of the feet from which they were split: the numbers of both, and their distance (m).
     fn splits(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         let split = self.feet.iter().enumerate().filter_map(|(which, foot)| {
-            let from = self.feet.iter().position(|other| Some(other.id) == foot.split_from)?;
+            let from = self.feet.iter().position(|other| Some(other.id) == foot.doubt.part_of)?;
             Some((which, from, foot.centre().distance(self.feet[from].centre())))
         });
         split.filter(|&(_, _, apart)| apart < OWN_M)
@@ -354,23 +363,25 @@ fn adopt(group: &mut Group<'_>, rival: Rival, fit: &Fit, list: &[LoadedTile]) {
         }
         let place = foot.place_under(rival, which);
         if foot.strayed() > STRAYED_M {
-            foot.outline = FanExtents::new(foot.rest_point);
+            foot.outline = FanExtents::new(foot.stillness.rest_point);
         }
         foot.rest_at(fit.forces[which], place);
         foot.restart_smoothing();
-        foot.nis = 0.0;
+        foot.doubt.nis = 0.0;
     }
     // A touchdown beside one of them goes on from its new place.
     for which in 0..group.len() {
-        let Some(existing) = group[which].touchdown.map(|touchdown| touchdown.existing) else { continue };
+        let Some(existing) = group[which].arrivals.touchdown.map(|touchdown| touchdown.existing) else {
+            continue;
+        };
         let place = group.iter().find(|foot| foot.id == existing).map(|foot| foot.centre());
-        group[which].touchdown = place.map(|from| Touchdown { existing, from });
+        group[which].arrivals.touchdown = place.map(|from| Touchdown { existing, from });
     }
     let Rival::Further(place) = rival else { return };
     let Some(&force) = fit.forces.get(group.len()) else { return };
-    let away = |foot: &&mut &mut Track| foot.rest_point.distance(place);
+    let away = |foot: &&mut &mut Track| foot.stillness.rest_point.distance(place);
     let Some(nearest) = group.iter_mut().min_by(|a, b| away(a).total_cmp(&away(b))) else { return };
     let under = |position: &&u32| list[**position as usize].centroid.as_dvec2().distance(place) < AROUND_M;
     let tiles = nearest.tiles.iter().filter(under).copied().collect();
-    nearest.candidate = Some(CandidateTrack::found(force, place, OVER_STEP_M, tiles));
+    nearest.arrivals.candidate = Some(CandidateTrack::found(force, place, OVER_STEP_M, tiles));
 }

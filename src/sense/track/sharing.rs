@@ -79,8 +79,8 @@ impl Tracker {
         self.owner.resize(tiles, UNASSIGNED);
         self.sharing.clear();
         for (which, foot) in (0..).zip(self.tracks.iter_mut()) {
-            foot.group = which;
-            foot.crowded = false;
+            foot.company.group = which;
+            foot.company.crowded = false;
             for &position in &foot.tiles {
                 let owner = &mut self.owner[position as usize];
                 if *owner == UNASSIGNED {
@@ -94,11 +94,12 @@ impl Tracker {
         self.members.clear();
         for &(foot, owner) in &self.sharing {
             self.members.extend([foot, owner]);
-            let (mine, theirs) = (self.tracks[foot as usize].group, self.tracks[owner as usize].group);
+            let (mine, theirs) =
+                (self.tracks[foot as usize].company.group, self.tracks[owner as usize].company.group);
             if mine != theirs {
                 let (keep, drop) = (mine.min(theirs), mine.max(theirs));
                 for mate in self.mates.of(drop) {
-                    self.tracks[mate].group = keep;
+                    self.tracks[mate].company.group = keep;
                 }
                 self.mates.unite(keep, drop);
             }
@@ -106,14 +107,15 @@ impl Tracker {
         self.members.sort_unstable();
         self.members.dedup();
         for &which in &self.members {
-            self.tracks[which as usize].crowded = true;
+            self.tracks[which as usize].company.crowded = true;
         }
-        self.mates.order(self.members.iter().map(|&which| (which, self.tracks[which as usize].group)));
+        self.mates
+            .order(self.members.iter().map(|&which| (which, self.tracks[which as usize].company.group)));
     }
 
     /// Records the group of each foot; group numbers are below `groups`.
     pub(super) fn renew_groups(&mut self, groups: usize) {
-        self.mates.renew(self.tracks.iter().map(|foot| foot.group), groups);
+        self.mates.renew(self.tracks.iter().map(|foot| foot.company.group), groups);
     }
 }
 

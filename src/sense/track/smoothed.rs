@@ -57,11 +57,11 @@ impl Track {
         let tiles = self.tiles.as_slice();
         let loads = &mut self.smoothed.loads;
         // A foot that has just become alone starts from the measured loads.
-        let fresh = !self.shared && loads.is_empty();
+        let fresh = !self.company.shared && loads.is_empty();
         let weight = if fresh && self.age > 0.0 { 1.0 } else { 1.0 - elapsed.smoothed };
         for (at, &position) in tiles.iter().enumerate() {
             let tile = &list[position as usize];
-            let (force, moment) = if self.shared {
+            let (force, moment) = if self.company.shared {
                 let (low, high) = cells.of(tile);
                 let on = PatchOnTile::new(low, high, centre, half);
                 (on.share() * whole, on.moment() * whole)

@@ -51,10 +51,11 @@ impl Stance {
 /// stand as they landed.
 pub(super) fn place(group: &mut [&mut Track], tiles: &LoadedTiles, cells: &Cells, elapsed: &Elapsed) -> bool {
     let [first, second] = group else {
-        group.iter_mut().for_each(|foot| foot.stance = None);
+        group.iter_mut().for_each(|foot| foot.arrivals.stance = None);
         return false;
     };
-    let stands = |foot: &Track, other: &Track| foot.stance.is_some_and(|stance| stance.other == other.id);
+    let stands =
+        |foot: &Track, other: &Track| foot.arrivals.stance.is_some_and(|stance| stance.other == other.id);
     let (foot, other) = if stands(second, first) {
         (second, first)
     } else if stands(first, second) {
@@ -62,7 +63,7 @@ pub(super) fn place(group: &mut [&mut Track], tiles: &LoadedTiles, cells: &Cells
     } else {
         return false;
     };
-    let Some(mut stance) = foot.stance.take() else { return false };
+    let Some(mut stance) = foot.arrivals.stance.take() else { return false };
     let both = foot.tiles_with(other);
     let strips = Strips::of(both.iter().map(|&position| &tiles.list()[position as usize]), cells.pitch);
     if stance.refits.is_due_after(elapsed.dt) {
@@ -87,10 +88,10 @@ pub(super) fn place(group: &mut [&mut Track], tiles: &LoadedTiles, cells: &Cells
         }
         foot.reset_covariance(stance.deviations[which]);
         foot.covariance[FORCE][FORCE] = (0.2 * force + 5.0).powi(2);
-        (foot.nis, foot.misfit) = (0.0, 0.0);
+        (foot.doubt.nis, foot.doubt.misfit) = (0.0, 0.0);
         // Another division may explain the loads as well: no tile has shown either foot.
-        foot.contested_s = CONTESTED_S;
+        foot.doubt.contested_s = CONTESTED_S;
     }
-    foot.stance = Some(stance);
+    foot.arrivals.stance = Some(stance);
     true
 }

@@ -1,24 +1,16 @@
 //! The state of one foot, and its change over time.
 
 use super::params::explanation::ROLL_M;
-use super::params::state::{BODY_N, BODY_SHARE, CALM_S, HALF_REST, LEAST_BODY_N, UNKNOWN_HALF_M};
-use super::params::stillness::SWAY_MOST_M;
+use super::params::state::{BODY_SHARE, CALM_S, HALF_REST, LEAST_BODY_N, UNKNOWN_HALF_M};
 use arrayvec::ArrayVec;
-use glam::{DVec2, IVec2};
+use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::elapsed::Elapsed;
-use super::explanation::Explanation;
-use super::initiate::CandidateTrack;
 use super::outline::FanExtents;
-use super::pair::Fitted;
+use super::parts::{Arrivals, Company, Doubt, Sensors, Shape, Step, Stillness};
 use super::patch::PatchOnTile;
-use super::reach::NOTHING_BORNE;
-use super::rivals::Lead;
 use super::smoothed::Smoothed;
-use super::stance::Stance;
-use super::strips::Residual;
-use super::touchdown::Touchdown;
 use crate::sense::Quality;
 use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::contact::ContactId;
@@ -61,85 +53,15 @@ pub(super) struct Track {
     pub tiles: SmallVec<[u32; 12]>,
     /// Time for which the foot has been too light to exist, less the recovery since (s).
     pub empty_s: f64,
-    /// Peak force (N).
-    pub peak: f64,
-    /// Force above which this track carries a person (N), as known from the person's steps.
-    pub body_n: f64,
-    /// Time for which another foot alone has explained the loads (s).
-    pub enough_s: f64,
-    /// Time for which new tracks stay suppressed (s).
-    pub suppressed_s: f64,
-    /// Number of the group of feet with which it is estimated.
-    pub group: u32,
-    /// The estimator that holds its covariances with other feet, if it has any, and their start in its list.
-    pub links_from: (usize, usize),
-    /// Whether its group has several feet.
-    pub crowded: bool,
-    /// Whether its group has more feet than the joint filter holds.
-    pub beyond_filter: bool,
-    /// Whether its share is indistinguishable from that of another foot.
-    pub ambiguous: bool,
-    /// Whether other feet share its tiles.
-    pub shared: bool,
-    /// The track of which it may be a part, until it has carried a tile by itself: it was split from that one, or is
-    /// lighter while other explanations are likely.
-    pub split_from: Option<ContactId>,
-    /// Differences between its shape and the model patch, from its last time alone.
-    pub residuals: SmallVec<[Residual; 8]>,
-    /// Lowest and highest column and row on which the residuals show load.
-    pub borne: (IVec2, IVec2),
-    /// Recent mean NIS of the joint filter: 0 for a perfect fit.
-    pub nis: f64,
-    /// Misfit of the loads when this foot and another one, which stood still, were last placed beside each other; 0
-    /// once it is alone.
-    pub misfit: f64,
-    /// Mean speed of its centre of pressure over the last 0.25 s (m/s).
-    pub mean_speed: f64,
-    /// Time alone since the last update of its shape (s).
-    pub unlearnt_s: f64,
-    /// Time for which it has been alone on its tiles (s).
-    pub alone_s: f64,
-    /// Its place when last measured alone; `None` before.
-    pub alone_at: Option<DVec2>,
-    /// Rest point of its centre of pressure while it shares tiles, and its stray about that point (m).
-    pub rest_point: DVec2,
-    pub sway_m: f64,
-    /// Time for which it stood still there, and time for which it has moved since (s).
-    pub still_s: f64,
-    pub away_s: f64,
-    /// Time since another foot, possibly of the same person, was last near it (s); infinite if none was.
-    pub partner_s: f64,
-    /// The worst quality of its tiles, and whether that has just changed.
-    pub quality: Quality,
-    pub quality_changed: bool,
-    /// The touchdown beside another foot.
-    pub touchdown: Option<Touchdown>,
-    /// Its centre of pressure when it landed.
-    pub landed: DVec2,
     /// The points that it has pressed recently.
     pub outline: FanExtents,
-    /// Anchor point where it stood still, the time there and the time away from it (s).
-    pub anchor: DVec2,
-    pub anchored_s: f64,
-    pub astray_s: f64,
-    /// Largest distance of its centre of pressure from the place of its touchdown (m).
-    pub travel: f64,
-    /// Whether it has landed together with another foot and has not been measured alone since.
-    pub landed_together: bool,
-    /// Whether another foot has been near it since its touchdown; then it is one foot.
-    pub accompanied: bool,
-    /// Log odds of two feet against one.
-    pub explanation: Explanation,
-    /// The rival explanation of its group that is ahead of the filter's, if it is the first of the group.
-    pub lead: Lead,
-    /// Time for which it stays ambiguous since another explanation of its loads was likely (s).
-    pub contested_s: f64,
-    /// The foot with which it landed and stands.
-    pub stance: Option<Stance>,
-    /// Two soles fitted to its loads.
-    pub fitted: Fitted,
-    /// A foot that may have landed among its tiles in this frame.
-    pub candidate: Option<CandidateTrack>,
+    pub shape: Shape,
+    pub stillness: Stillness,
+    pub step: Step,
+    pub company: Company,
+    pub doubt: Doubt,
+    pub sensors: Sensors,
+    pub arrivals: Arrivals,
 }
 
 impl Track {
@@ -153,47 +75,14 @@ impl Track {
             smoothed: Smoothed { force, centre, ..Smoothed::default() },
             tiles: SmallVec::new(),
             empty_s: 0.0,
-            peak: 0.0,
-            body_n: BODY_N,
-            enough_s: 0.0,
-            suppressed_s: 0.0,
-            group: 0,
-            links_from: (0, 0),
-            crowded: false,
-            beyond_filter: false,
-            ambiguous: false,
-            shared: false,
-            split_from: None,
-            residuals: SmallVec::new(),
-            borne: NOTHING_BORNE,
-            nis: 0.0,
-            misfit: 0.0,
-            mean_speed: 0.4,
-            unlearnt_s: 0.0,
-            alone_s: 0.0,
-            alone_at: None,
-            rest_point: centre,
-            still_s: 0.0,
-            away_s: 0.0,
-            partner_s: f64::INFINITY,
-            quality: Quality::Live,
-            quality_changed: false,
-            touchdown: None,
-            sway_m: SWAY_MOST_M,
-            landed: centre,
             outline: FanExtents::new(centre),
-            anchor: centre,
-            anchored_s: 0.0,
-            astray_s: 0.0,
-            travel: 0.0,
-            landed_together: false,
-            accompanied: false,
-            explanation: Explanation::new(),
-            lead: Lead::default(),
-            contested_s: 0.0,
-            stance: None,
-            fitted: Fitted::default(),
-            candidate: None,
+            shape: Shape::unknown(),
+            stillness: Stillness::at(centre),
+            step: Step::at(centre),
+            company: Company::none(),
+            doubt: Doubt::default(),
+            sensors: Sensors::default(),
+            arrivals: Arrivals::default(),
         };
         foot.reset_covariance(deviation);
         for half in [HALF_EAST, HALF_NORTH] {
@@ -228,13 +117,17 @@ impl Track {
 
     /// Whether it has carried the weight of a person.
     pub(super) fn bears(&self) -> bool {
-        self.peak >= self.body_n
+        self.step.peak >= self.step.body_n
     }
 
     /// Force above which the feet of the same person carry the person: the steps of a light person lower it.
     pub(super) fn body_of_owner(&self) -> f64 {
-        let stepped = self.travel > ROLL_M && self.peak > LEAST_BODY_N;
-        if stepped { self.body_n.min((BODY_SHARE * self.peak).max(LEAST_BODY_N)) } else { self.body_n }
+        let stepped = self.step.travel > ROLL_M && self.step.peak > LEAST_BODY_N;
+        if stepped {
+            self.step.body_n.min((BODY_SHARE * self.step.peak).max(LEAST_BODY_N))
+        } else {
+            self.step.body_n
+        }
     }
 
     pub(super) fn force(&self) -> f64 {
@@ -265,7 +158,7 @@ impl Track {
 
     /// Whether it was put down beside `existing` while that foot stood still.
     pub(super) fn has_landed_beside(&self, existing: &Self) -> bool {
-        self.touchdown.is_some_and(|touchdown| touchdown.existing == existing.id)
+        self.arrivals.touchdown.is_some_and(|touchdown| touchdown.existing == existing.id)
     }
 
     /// Its tiles and those of `other`, each once, up to the capacity.
@@ -285,19 +178,20 @@ impl Track {
     /// Measures the track on tiles that no other track shares, for the first time or again.
     pub(super) fn measure(&mut self, list: &[LoadedTile], elapsed: &Elapsed) {
         let before = self.centre();
-        let until_now = std::mem::replace(&mut self.shared, false);
+        let until_now = std::mem::replace(&mut self.company.shared, false);
         self.alone(list, elapsed);
-        let quality_changed = std::mem::take(&mut self.quality_changed);
+        let quality_changed = std::mem::take(&mut self.sensors.quality_changed);
         if until_now || quality_changed {
             self.restart_smoothing();
-            (self.anchor, self.anchored_s, self.astray_s) = (self.centre(), 0.0, 0.0);
+            (self.stillness.anchor, self.stillness.anchored_s, self.stillness.astray_s) =
+                (self.centre(), 0.0, 0.0);
         }
         if quality_changed {
             // The foot has not moved; only the measurement has changed.
-            self.rest_point = if self.suppressed_s > 0.0 {
+            self.stillness.rest_point = if self.sensors.suppressed_s > 0.0 {
                 self.centre()
             } else {
-                self.rest_point + self.centre() - before
+                self.stillness.rest_point + self.centre() - before
             };
         }
     }
@@ -330,16 +224,16 @@ impl Track {
             self.reset_covariance(0.003);
             self.has_lone_covariance = true;
         }
-        self.landed_together = false;
-        self.ambiguous = false;
+        self.company.landed_together = false;
+        self.doubt.ambiguous = false;
     }
 
     /// Advances the smoothed state by `dt` seconds.
     pub(super) fn predict(&mut self, dt: f64) {
         self.age += dt;
-        self.suppressed_s = (self.suppressed_s - dt).max(0.0);
-        self.contested_s = (self.contested_s - dt).max(0.0);
-        self.partner_s += dt;
+        self.sensors.suppressed_s = (self.sensors.suppressed_s - dt).max(0.0);
+        self.doubt.contested_s = (self.doubt.contested_s - dt).max(0.0);
+        self.company.partner_s += dt;
         self.smoothed.centre += self.smoothed.velocity * dt;
         self.smoothed.force = (self.smoothed.force + self.smoothed.force_rate * dt).max(0.0);
     }
@@ -348,14 +242,14 @@ impl Track {
     ///
     /// `lasts`: the readings go on changing for a while.
     pub(super) fn on_quality_change(&mut self, quality: Quality, lasts: bool) {
-        self.quality = quality;
-        self.quality_changed = true;
-        self.suppressed_s = if lasts { CALM_S } else { 0.0 };
+        self.sensors.quality = quality;
+        self.sensors.quality_changed = true;
+        self.sensors.suppressed_s = if lasts { CALM_S } else { 0.0 };
     }
 
     /// Suppresses new tracks for the next [`CALM_S`].
     pub(super) fn suppress_births(&mut self) {
-        self.suppressed_s = CALM_S;
+        self.sensors.suppressed_s = CALM_S;
     }
 
     /// Sets the foot to this force and centre of pressure, alone.
@@ -363,7 +257,7 @@ impl Track {
         self.state[FORCE] = force;
         self.state[EAST] = centre.x;
         self.state[NORTH] = centre.y;
-        self.rest_point = centre;
+        self.stillness.rest_point = centre;
         self.reset_covariance(0.01);
     }
 }

@@ -96,7 +96,7 @@ pub(super) fn place(
         let distance = distance(step);
         let stepping_force = moment / distance;
         let place = from + ahead * distance;
-        if stepping_force > 1.03 * force || place.distance(stepping.landed) > SHOE_M {
+        if stepping_force > 1.03 * force || place.distance(stepping.step.landed) > SHOE_M {
             continue;
         }
         let existing_force = (force - stepping_force).max(0.0);
@@ -117,7 +117,7 @@ pub(super) fn place(
     stepping.put(part, place, misfit);
     if part > TAKEN_OVER * force {
         // The earlier guess of its place must not remain its rest point.
-        stepping.rest_point = stepping.centre();
+        stepping.stillness.rest_point = stepping.centre();
     }
     // The moment is known: a larger distance means a smaller force.
     let force_variance = distance.variance * (part / distance.mean).powi(2) + 9.0;
@@ -173,8 +173,8 @@ impl Track {
         self.state[EAST + 1] = 0.0;
         self.state[NORTH + 1] = 0.0;
         self.reset_covariance(PLACE_M);
-        self.nis = 0.0;
-        self.misfit = misfit;
+        self.doubt.nis = 0.0;
+        self.doubt.misfit = misfit;
     }
 }
 
