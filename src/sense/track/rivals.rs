@@ -171,6 +171,9 @@ impl Track {
     }
 }
 
+/// Feet of one explanation.
+type Parts<'a> = ArrayVec<&'a Part, MOST_PARTS>;
+
 /// All explanations of the loads of a group.
 struct Explanations<'a> {
     feet: ArrayVec<&'a Track, MOST>,
@@ -208,6 +211,7 @@ impl<'a> Explanations<'a> {
         let mut best = Best { limit: self.settled()? - AHEAD, found: None };
         let home: ArrayVec<Part, MOST_PARTS> =
             self.feet.iter().map(|foot| self.part(foot, foot.stillness.rest_point, 0.0)).collect();
+        let home: Parts<'_> = home.iter().collect();
         let have_room = self.have_room();
         for way in ways(STEPS_AROUND).map(|steps| steps * AROUND_STEP_M) {
             self.drop_splits(&home, way, &mut best);
@@ -232,15 +236,16 @@ impl<'a> Explanations<'a> {
     }
 
     /// Considers explanations in which one foot, or all of them, have moved `way` from their rest points.
-    fn move_feet(&self, home: &ArrayVec<Part, MOST_PARTS>, way: DVec2, best: &mut Best) {
+    fn move_feet(&self, home: &Parts<'_>, way: DVec2, best: &mut Best) {
         let all: ArrayVec<Part, MOST_PARTS> = self
             .feet
             .iter()
             .map(|foot| self.part(foot, foot.stillness.rest_point + way, AROUND_STEP_M))
             .collect();
+        let all: Parts<'_> = all.iter().collect();
         for (which, moved) in all.iter().enumerate() {
             let mut parts = home.clone();
-            parts[which] = moved.clone();
+            parts[which] = moved;
             if let Some(fit) = self.loads.fit(&parts) {
                 let place = moved.place + self.loads.off(&parts, &fit, fit.forces[which], AROUND_STEP_M);
                 best.consider(Rival::Moved(which, place), fit.and(rolled(way)));
@@ -253,22 +258,25 @@ impl<'a> Explanations<'a> {
     }
 
     /// Considers explanations in which a split track is a part of the other foot, which has moved `way`.
-    fn drop_splits(&self, home: &ArrayVec<Part, MOST_PARTS>, way: DVec2, best: &mut Best) {
+    fn drop_splits(&self, home: &Parts<'_>, way: DVec2, best: &mut Best) {
         for (gone, from, apart) in self.splits() {
+            let rest_point = self.feet[from].stillness.rest_point;
+            let moved = self.part(self.feet[from], rest_point + way, AROUND_STEP_M);
+            let absent = home[gone].clone().absent();
             let mut parts = home.clone();
-            parts[from] =
-                self.part(self.feet[from], self.feet[from].stillness.rest_point + way, AROUND_STEP_M);
-            parts[gone] = parts[gone].clone().absent();
+            (parts[from], parts[gone]) = (&moved, &absent);
             if let Some(fit) = self.loads.fit(&parts) {
                 let off = self.loads.off(&parts, &fit, fit.forces[from], AROUND_STEP_M);
-                let place = parts[from].place + off;
-                best.consider(Rival::Without(gone, from, place), fit.and(rolled(way) - overlap(apart)));
+                best.consider(
+                    Rival::Without(gone, from, moved.place + off),
+                    fit.and(rolled(way) - overlap(apart)),
+                );
             }
         }
     }
 
     /// Considers explanations with a further foot anywhere on the tiles.
-    fn add_feet(&self, home: &ArrayVec<Part, MOST_PARTS>, best: &mut Best) {
+    fn add_feet(&self, home: &Parts<'_>, best: &mut Best) {
         for &(low, high) in &self.tiles {
             let steps = ((high - low) / OVER_STEP_M).floor();
             for (east, north) in (0..steps.x as i32).flat_map(|x| (0..steps.y as i32).map(move |y| (x, y))) {
@@ -281,10 +289,11 @@ impl<'a> Explanations<'a> {
     }
 
     /// Considers explanations with a further foot at `place`.
-    fn add_foot(&self, home: &ArrayVec<Part, MOST_PARTS>, place: DVec2, best: &mut Best) {
+    fn add_foot(&self, home: &Parts<'_>, place: DVec2, best: &mut Best) {
         for half in HALVES {
+            let further = self.loads.part(place, DVec2::splat(half), OVER_STEP_M, 0.0, |_, _| [0.0; 3]);
             let mut parts = home.clone();
-            parts.push(self.loads.part(place, DVec2::splat(half), OVER_STEP_M, 0.0, |_, _| [0.0; 3]));
+            parts.push(&further);
             let Some(fit) = self.loads.fit(&parts) else { continue };
             let force = fit.forces[parts.len() - 1];
             if force > LEAST_SHARE * self.loads.force() && fit.misfit < FITS {
@@ -303,7 +312,7 @@ impl<'a> Explanations<'a> {
             |foot: &Track, place: DVec2| (foot.stillness.rest_point.distance(place) / ROLLED_M).powi(2);
         let total = |parts: &[Part]| {
             let strayed = self.feet.iter().zip(parts).map(|(foot, part)| strayed(foot, part.place));
-            self.loads.fit(parts).map(|fit| fit.cost + strayed.sum::<f64>())
+            self.loads.fit(&parts.iter().collect::<Parts<'_>>()).map(|fit| fit.cost + strayed.sum::<f64>())
         };
         let mut least = total(&parts)?;
         for (which, foot) in self.feet.iter().enumerate() {

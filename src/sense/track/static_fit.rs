@@ -104,36 +104,51 @@ impl StripLoads {
 
     /// Fits the forces of `parts`, none of them negative, by weighted least squares: first with the variances of equal
     /// forces, then with those of the forces found. `None` if the loads don't determine them.
-    pub(super) fn fit(&self, parts: &[Part]) -> Option<Fit> {
-        let equal = [self.strips.force / parts.len() as f64; MOST_PARTS];
-        let first = self.solve(parts, &equal)?;
-        let forces = self.solve(parts, &first)?;
-        let (cost, misfit) = self.cost(parts, &forces);
+    pub(super) fn fit(&self, parts: &[&Part]) -> Option<Fit> {
+        // A number of feet known to the compiler halves the time of a comparison.
+        match *parts {
+            [a] => self.fit_of([a]),
+            [a, b] => self.fit_of([a, b]),
+            [a, b, c] => self.fit_of([a, b, c]),
+            [a, b, c, d] => self.fit_of([a, b, c, d]),
+            [a, b, c, d, e] => self.fit_of([a, b, c, d, e]),
+            _ => None,
+        }
+    }
+
+    fn fit_of<const N: usize>(&self, parts: [&Part; N]) -> Option<Fit> {
+        let first = self.solve(parts, &[self.strips.force / N as f64; N])?;
+        let found = self.solve(parts, &first)?;
+        let (cost, misfit) = self.cost(parts, &found);
+        let mut forces = [0.0; MOST_PARTS];
+        forces[..N].copy_from_slice(&found);
         Some(Fit { forces, cost, misfit })
     }
 
     /// Way by which feet of `force` newtons together lie off if all loads are to have their common centroid: at most
     /// `step` along each axis.
-    pub(super) fn off(&self, parts: &[Part], fit: &Fit, force: f64, step: f64) -> DVec2 {
+    pub(super) fn off(&self, parts: &[&Part], fit: &Fit, force: f64, step: f64) -> DVec2 {
         let moment: DVec2 =
             parts.iter().zip(fit.forces).map(|(part, force)| (part.place - self.strips.middle) * force).sum();
         (-moment / force.max(1.0)).clamp(DVec2::splat(-step), DVec2::splat(step))
     }
 
     /// Calls `visit` with each observation, its coefficients for every foot, and its variance under `forces`.
-    fn observe(
+    #[inline(always)]
+    fn observe<const N: usize>(
         &self,
-        parts: &[Part],
-        forces: &[f64; MOST_PARTS],
-        mut visit: impl FnMut(f64, [f64; MOST_PARTS], f64),
+        parts: [&Part; N],
+        forces: &[f64; N],
+        mut visit: impl FnMut(f64, [f64; N], f64),
     ) {
+        let sway = parts.map(|part| SWAY_M.max(OFF_GRID * part.step));
         for (at, strip) in self.strips.strips.iter().enumerate() {
             let lever = 0.5 * strip.axis.along(self.pitch);
+            let loads = parts.map(|part| part.on[at]);
             let (mut unsure, mut swaying) = (0.0, 0.0);
-            for (part, force) in parts.iter().zip(forces) {
-                let load = &part.on[at];
+            for ((load, force), sway) in loads.iter().zip(forces).zip(sway) {
                 unsure += force * force * load.unlike;
-                swaying += (SWAY_M.max(OFF_GRID * part.step) * force * load.of[0]).powi(2);
+                swaying += (sway * force * load.of[0]).powi(2);
             }
             let misread = MISREAD_N * MISREAD_N;
             let variances = [
@@ -143,17 +158,15 @@ impl StripLoads {
             ];
             let observed = [strip.force, strip.moment, strip.cross];
             for (row, (observed, variance)) in observed.into_iter().zip(variances).enumerate() {
-                let mut coefficients = [0.0; MOST_PARTS];
-                coefficients.iter_mut().zip(parts).for_each(|(to, part)| *to = part.on[at].of[row]);
-                visit(observed, coefficients, variance + strip.noise[row]);
+                visit(observed, loads.map(|load| load.of[row]), variance + strip.noise[row]);
             }
         }
     }
 
     /// The forces of weighted least squares, with the variances under `forces`.
-    fn solve(&self, parts: &[Part], forces: &[f64; MOST_PARTS]) -> Option<[f64; MOST_PARTS]> {
-        let mut normal = [[0.0; MOST_PARTS]; MOST_PARTS];
-        let mut right = [0.0; MOST_PARTS];
+    fn solve<const N: usize>(&self, parts: [&Part; N], forces: &[f64; N]) -> Option<[f64; N]> {
+        let mut normal = [[0.0; N]; N];
+        let mut right = [0.0; N];
         self.observe(parts, forces, |observed, coefficients, variance| {
             for (row, coefficient) in coefficients.into_iter().enumerate() {
                 right[row] += coefficient * observed / variance;
@@ -162,8 +175,7 @@ impl StripLoads {
                 }
             }
         });
-        let mut used: ArrayVec<usize, MOST_PARTS> =
-            (0..parts.len()).filter(|&which| normal[which][which] > 0.0).collect();
+        let mut used: ArrayVec<usize, N> = (0..N).filter(|&which| normal[which][which] > 0.0).collect();
         loop {
             let found = solved(&normal, &right, &used)?;
             let Some(negative) = used.iter().position(|&which| found[which] < 0.0) else {
@@ -173,7 +185,7 @@ impl StripLoads {
         }
     }
 
-    fn cost(&self, parts: &[Part], forces: &[f64; MOST_PARTS]) -> (f64, f64) {
+    fn cost<const N: usize>(&self, parts: [&Part; N], forces: &[f64; N]) -> (f64, f64) {
         let (mut cost, mut squares) = (0.0, 0.0);
         self.observe(parts, forces, |observed, coefficients, variance| {
             let expected: f64 = coefficients.iter().zip(forces).map(|(share, force)| share * force).sum();
@@ -186,11 +198,7 @@ impl StripLoads {
 }
 
 /// Solves the normal equations of the unknowns in `used`; the others are zero. `None` if they are singular.
-fn solved(
-    normal: &[[f64; MOST_PARTS]; MOST_PARTS],
-    right: &[f64; MOST_PARTS],
-    used: &[usize],
-) -> Option<[f64; MOST_PARTS]> {
+fn solved<const N: usize>(normal: &[[f64; N]; N], right: &[f64; N], used: &[usize]) -> Option<[f64; N]> {
     let (mut normal, mut right) = (*normal, *right);
     for (step, &pivot) in used.iter().enumerate() {
         let by = normal[pivot][pivot];
@@ -205,7 +213,7 @@ fn solved(
             right[row] -= factor * right[pivot];
         }
     }
-    let mut found = [0.0; MOST_PARTS];
+    let mut found = [0.0; N];
     for (step, &row) in used.iter().enumerate().rev() {
         let known: f64 = used[step + 1..].iter().map(|&column| normal[row][column] * found[column]).sum();
         found[row] = (right[row] - known) / normal[row][row];
