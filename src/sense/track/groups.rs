@@ -23,6 +23,10 @@ pub(super) const BATCHES: usize = 16;
 /// Maximum number of groups divided into batches at once, which bounds the stack space.
 const MOST_GROUPS: usize = 256;
 
+/// Maximum number of comparisons with rivals in one frame, for each batch: each takes as long as several frames of the
+/// filter. A group without time for one waits for the next frame; of 8 ms between two comparisons, each frame is one.
+const MOST_COMPARISONS: usize = 1;
+
 /// The feet of a group, up to the capacity of one filter.
 pub(super) type Group<'a> = ArrayVec<&'a mut Track, MOST_FEET>;
 
@@ -68,6 +72,7 @@ impl Tracker {
                 self.estimators.iter_mut().zip(groups.chunks_mut(size)).collect();
             let (links, cells) = (&self.links, &self.cells);
             parallel::for_each_batch(&mut batches, feet, |_, (estimator, groups)| {
+                let mut comparisons = 0;
                 for group in groups.iter_mut() {
                     group.iter_mut().for_each(|foot| foot.join(false));
                     if stance::place(group, tiles, cells, elapsed) {
@@ -76,7 +81,9 @@ impl Tracker {
                     if !place_touchdown(group, tiles.list(), cells) {
                         estimator.estimate(group, links, tiles.list(), cells, elapsed);
                     }
-                    rivals::compare(group, tiles.list(), cells, elapsed);
+                    let has_time = comparisons < MOST_COMPARISONS;
+                    let took_time = rivals::compare(group, tiles.list(), cells, elapsed, has_time);
+                    comparisons += usize::from(took_time);
                 }
             });
         }

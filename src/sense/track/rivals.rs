@@ -49,6 +49,8 @@ pub(super) struct Lead {
     times: u8,
     /// Number of comparisons for which no rival may replace the filter's explanation, since one has just done so.
     pause: u8,
+    /// Whether its turn has come in a frame that had time for no more comparisons.
+    waits: bool,
 }
 
 /// A rival explanation.
@@ -82,20 +84,32 @@ impl Rival {
 }
 
 /// Compares the explanations of a group that the filter has just estimated, and changes its feet if a rival has been
-/// ahead for some time.
-pub(super) fn compare(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells, elapsed: &Elapsed) {
+/// ahead for some time. Returns whether that took time; without `has_time`, a group whose turn has come waits for the
+/// next frame.
+pub(super) fn compare(
+    group: &mut Group<'_>,
+    list: &[LoadedTile],
+    cells: &Cells,
+    elapsed: &Elapsed,
+    has_time: bool,
+) -> bool {
     if !may_have_rivals(group) {
-        return;
+        return false;
     }
     let first = &*group[0];
     let turn = |age: f64| (age / EVERY_S).floor();
-    if turn(first.age) == turn(first.age - elapsed.dt) {
-        return;
+    if !first.doubt.lead.waits && turn(first.age) == turn(first.age - elapsed.dt) {
+        return false;
+    }
+    if !has_time {
+        group[0].doubt.lead.waits = true;
+        return false;
     }
     let before = first.doubt.lead;
     let mut lead = Lead { pause: before.pause.saturating_sub(1), ..Lead::default() };
     let mut best = None;
-    if lead.pause == 0 && group.iter().any(|foot| foot.is_doubtful()) {
+    let has_rivals = lead.pause == 0 && group.iter().any(|foot| foot.is_doubtful());
+    if has_rivals {
         // One that leaves every foot where the filter has it is the filter's own.
         best = Explanations::of(group, list, cells).best().filter(|(rival, _)| rival.differs_from(group));
     }
@@ -116,6 +130,7 @@ pub(super) fn compare(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells,
     if let Some((rival, fit)) = best.filter(|_| wins) {
         adopt(group, rival, &fit, list);
     }
+    has_rivals
 }
 
 /// Marks the feet that carry less than another one within a shoe of them: that one alone may explain the loads.
