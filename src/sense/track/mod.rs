@@ -39,6 +39,7 @@ mod patch;
 mod reach;
 mod refits;
 mod residual;
+mod rival;
 mod rivals;
 mod sharing;
 mod smoothed;

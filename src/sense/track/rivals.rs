@@ -21,7 +21,7 @@ use super::params::delete::OWN_M;
 use super::params::output;
 use super::params::reach::AROUND_M;
 use super::params::rivals::{
-    AHEAD, APART_M, AROUND_STEP_M, CONTESTED_S, EVERY_S, FITS, FURTHER, GONE_S, HALVES, LEAST_SHARE,
+    AHEAD, APART_M, AROUND_STEP_M, CONTESTED_S, EVERY_S, FITS, FURTHER, HALVES, LEAST_SHARE,
     OVER_STEP_M, OVERLAP_M, PAUSE, ROLLED_M, SETTLE_M, SPLIT, STEPS_AROUND, STRAYED_M, TIMES, TOGETHER,
 };
 use super::params::state::FLAT_S;
@@ -32,11 +32,9 @@ use glam::DVec2;
 use super::Cells;
 use super::elapsed::Elapsed;
 use super::groups::Group;
-use super::initiate::CandidateTrack;
-use super::outline::FanExtents;
+use super::rival::{Rival, adopt};
 use super::state::{MOST_TILES, Track, tiles_of};
 use super::static_fit::{Fit, MOST_PARTS, Part, StripLoads};
-use super::touchdown::Touchdown;
 use crate::sense::centroid::tile::LoadedTile;
 
 /// Maximum number of feet of a group with rivals: one less than a fit has.
@@ -51,36 +49,6 @@ pub(super) struct Lead {
     pause: u8,
     /// Whether its turn has come in a frame that had time for no more comparisons.
     waits: bool,
-}
-
-/// A rival explanation.
-#[derive(Clone, Copy, Debug)]
-enum Rival {
-    /// All feet stayed but this one, which is at this place now.
-    Moved(usize, DVec2),
-    /// All feet have moved this way.
-    Together(DVec2),
-    /// A further foot has landed at this place.
-    Further(DVec2),
-    /// The first foot is a part of the second one, which is at this place now.
-    Without(usize, usize, DVec2),
-}
-
-impl Rival {
-    /// Whether it is the same explanation as `other`, whatever the places.
-    fn is_like(self, other: Self) -> bool {
-        match (self, other) {
-            (Self::Moved(one, _), Self::Moved(another, _)) => one == another,
-            (Self::Without(one, ..), Self::Without(another, ..)) => one == another,
-            _ => std::mem::discriminant(&self) == std::mem::discriminant(&other),
-        }
-    }
-
-    /// Whether it has another number of feet than the filter, or one of them elsewhere.
-    fn differs_from(self, group: &Group<'_>) -> bool {
-        let is_elsewhere = |(which, foot): (usize, &&mut Track)| foot.is_elsewhere_under(self, which);
-        matches!(self, Self::Further(_) | Self::Without(..)) || group.iter().enumerate().any(is_elsewhere)
-    }
 }
 
 /// Compares the explanations of a group that the filter has just estimated, and changes its feet if a rival has been
@@ -128,7 +96,7 @@ pub(super) fn compare(
     let wins = lead.times >= TIMES;
     group[0].doubt.lead = if wins { Lead { pause: PAUSE, ..Lead::default() } } else { lead };
     if let Some((rival, fit)) = best.filter(|_| wins) {
-        adopt(group, rival, &fit, list);
+        adopt(group, rival, &fit.forces, list);
     }
     has_rivals
 }
@@ -152,24 +120,6 @@ fn may_have_rivals(group: &Group<'_>) -> bool {
 }
 
 impl Track {
-    /// Its place as foot `which` of its group if `rival` is right.
-    fn place_under(&self, rival: Rival, which: usize) -> DVec2 {
-        match rival {
-            Rival::Moved(moved, place) | Rival::Without(_, moved, place) if moved == which => place,
-            Rival::Together(way) => self.stillness.rest_point + way,
-            _ => self.stillness.rest_point,
-        }
-    }
-
-    fn is_elsewhere_under(&self, rival: Rival, which: usize) -> bool {
-        self.place_under(rival, which).distance(self.centre()) > STRAYED_M
-    }
-
-    /// Distance of its centre of pressure from its rest point (m).
-    fn strayed(&self) -> f64 {
-        self.centre().distance(self.stillness.rest_point)
-    }
-
     /// Whether the explanation of its loads has to compete.
     fn is_doubtful(&self) -> bool {
         self.strayed() > STRAYED_M || self.doubt.part_of.is_some() || self.doubt.misfit > output::FITS
@@ -376,36 +326,4 @@ fn rolled(way: DVec2) -> f64 {
 /// Cost of a split track at this distance from its other foot (m): a further foot, and shoes that would overlap.
 fn overlap(apart: f64) -> f64 {
     SPLIT + ((SIDE_BY_SIDE_M - apart).max(0.0) / OVERLAP_M).powi(2)
-}
-
-/// Replaces the filter's explanation by `rival`.
-fn adopt(group: &mut Group<'_>, rival: Rival, fit: &Fit, list: &[LoadedTile]) {
-    for (which, foot) in group.iter_mut().enumerate() {
-        if matches!(rival, Rival::Without(gone, ..) if gone == which) {
-            foot.empty_s = GONE_S;
-            continue;
-        }
-        let place = foot.place_under(rival, which);
-        if foot.strayed() > STRAYED_M {
-            foot.outline = FanExtents::new(foot.stillness.rest_point);
-        }
-        foot.rest_at(fit.forces[which], place);
-        foot.restart_smoothing();
-        foot.doubt.nis = 0.0;
-    }
-    // A touchdown beside one of them goes on from its new place.
-    for which in 0..group.len() {
-        let Some(existing) = group[which].arrivals.touchdown.map(|touchdown| touchdown.existing) else {
-            continue;
-        };
-        let place = group.iter().find(|foot| foot.id == existing).map(|foot| foot.centre());
-        group[which].arrivals.touchdown = place.map(|from| Touchdown { existing, from });
-    }
-    let Rival::Further(place) = rival else { return };
-    let Some(&force) = fit.forces.get(group.len()) else { return };
-    let away = |foot: &&mut &mut Track| foot.stillness.rest_point.distance(place);
-    let Some(nearest) = group.iter_mut().min_by(|a, b| away(a).total_cmp(&away(b))) else { return };
-    let under = |position: &&u32| list[**position as usize].centroid.as_dvec2().distance(place) < AROUND_M;
-    let tiles = nearest.tiles.iter().filter(under).copied().collect();
-    nearest.arrivals.candidate = Some(CandidateTrack::found(force, place, OVER_STEP_M, tiles));
 }
