@@ -21,8 +21,8 @@ use super::params::delete::OWN_M;
 use super::params::output;
 use super::params::reach::AROUND_M;
 use super::params::rivals::{
-    AHEAD, APART_M, AROUND_STEP_M, CONTESTED_S, EVERY_S, FITS, FURTHER, HALVES, LEAST_SHARE,
-    OVER_STEP_M, OVERLAP_M, PAUSE, ROLLED_M, SETTLE_M, SPLIT, STEPS_AROUND, STRAYED_M, TIMES, TOGETHER,
+    AHEAD, APART_M, AROUND_STEP_M, CONTESTED_S, EVERY_S, FITS, FURTHER, HALVES, LEAST_SHARE, OVER_STEP_M,
+    OVERLAP_M, PAUSE, ROLLED_M, SETTLE_M, SPLIT, STEPS_AROUND, STRAYED_M, TIMES, TOGETHER,
 };
 use super::params::state::FLAT_S;
 use super::params::touchdown::SIDE_BY_SIDE_M;
