@@ -27,8 +27,8 @@ pub struct WaitFreeReceiver<T> {
     reader: Arc<OnceLock<Thread>>,
 }
 
-/// An end of the queue that gives, for several threads: each waits while another one gives, and the receiver for none
-/// of them.
+/// The end of the queue that gives, shared by several threads: a thread may wait for another one that gives, but the
+/// receiver waits for none of them.
 #[derive(Debug)]
 pub struct SharedSender<T>(Arc<Mutex<WaitFreeSender<T>>>);
 
@@ -85,7 +85,8 @@ impl<T> SharedSender<T> {
         })
     }
 
-    /// Queues `item`, waits until there is room for it, and wakes the receiver.
+    /// Queues `item`, waits until there is room for it, and wakes the receiver. It sleeps for a millisecond at a
+    /// time while the queue is full, so it is not for a thread that must not wait, nor for a page in a browser.
     ///
     /// # Errors
     /// Returns `item` if the receiver has been dropped.

@@ -23,8 +23,8 @@ pub(super) const BATCHES: usize = 16;
 /// Maximum number of groups divided into batches at once, which bounds the stack space.
 const MOST_GROUPS: usize = 256;
 
-/// Maximum number of comparisons with rivals in one frame, for each batch: each takes as long as several frames of the
-/// filter. A group without time for one waits for the next frame; of 8 ms between two comparisons, each frame is one.
+/// Maximum number of groups of each batch whose rivals are compared in one frame (our choice): a comparison takes
+/// as long as many steps of the filter. A group whose turn comes in a full frame waits for the next one.
 const MOST_COMPARISONS: usize = 1;
 
 /// The feet of a group, up to the capacity of one filter.

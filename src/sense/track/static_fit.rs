@@ -105,7 +105,7 @@ impl StripLoads {
     /// Fits the forces of `parts`, none of them negative, by weighted least squares: first with the variances of equal
     /// forces, then with those of the forces found. `None` if the loads don't determine them.
     pub(super) fn fit(&self, parts: &[&Part]) -> Option<Fit> {
-        // A number of feet known to the compiler halves the time of a comparison.
+        // Loops over a number of feet that the compiler knows need no counter.
         match *parts {
             [a] => self.fit_of([a]),
             [a, b] => self.fit_of([a, b]),
