@@ -28,7 +28,7 @@ use crate::recording::{Recorded, Recorder, RecordingSwitch, WhenBehind};
 use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
 use crate::serve::Neighbours;
-use crate::sink::{CrackRateLimiter, EventSink, Fanout, LatencyStages, SharedSender, SinkError, wait_free};
+use crate::sink::{CrackRateLimiter, EventSink, Fanout, LatencyStages, SinkError, wait_free_shared};
 use crate::source::{FloorInput, SourceError, UdpSource};
 use crate::units::{HostClock, Instant};
 use crate::wire::Prefix;
@@ -322,8 +322,7 @@ impl SessionBuilder {
         let held = Arc::new(HeldWatch::new(held));
         let (snapshots, latest) = triple_buffer(&engine::Snapshot::default());
         let shown = Arc::new(Shown::new(latest, layout.clone()));
-        let (commands, received) = wait_free(COMMANDS_WAITING);
-        let commands = SharedSender::new(commands);
+        let (commands, received) = wait_free_shared(COMMANDS_WAITING);
         let waker = self.wake.map(|wake| Waker::start(wake, commands.clone())).transpose();
         let waker = waker.map_err(StartError::Thread)?.map(Arc::new);
         // The app gets reports first, even if another sink fails.

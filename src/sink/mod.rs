@@ -64,7 +64,7 @@ pub use since::Since;
 pub use stereo::StereoSink;
 #[cfg(feature = "net")]
 pub use tuio::{TuioSink, TuioVersion};
-pub use wait_free::{SharedSender, WaitFreeReceiver, WaitFreeSender, wait_free};
+pub use wait_free::{SharedSender, WaitFreeReceiver, WaitFreeSender, wait_free, wait_free_shared};
 #[cfg(all(unix, feature = "net"))]
 pub use watchdog::Watchdog;
 #[cfg(feature = "wav")]

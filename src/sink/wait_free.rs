@@ -48,6 +48,13 @@ pub fn wait_free<T>(capacity: usize) -> (WaitFreeSender<T>, WaitFreeReceiver<T>)
     (sender, WaitFreeReceiver { items: consumer, reader })
 }
 
+/// As [`wait_free`], with an end for several threads that give.
+#[must_use]
+pub fn wait_free_shared<T>(capacity: usize) -> (SharedSender<T>, WaitFreeReceiver<T>) {
+    let (sender, receiver) = wait_free(capacity);
+    (SharedSender(Arc::new(Mutex::new(sender))), receiver)
+}
+
 impl<T> WaitFreeSender<T> {
     /// Queues `item` and wakes the receiver.
     ///
@@ -64,12 +71,6 @@ impl<T> WaitFreeSender<T> {
 }
 
 impl<T> SharedSender<T> {
-    /// The same end for several threads.
-    #[must_use]
-    pub fn new(sender: WaitFreeSender<T>) -> Self {
-        Self(Arc::new(Mutex::new(sender)))
-    }
-
     /// Queues `item` and wakes the receiver.
     ///
     /// # Errors
@@ -232,8 +233,7 @@ mod tests {
 
     #[test]
     fn several_threads_send_and_wait_for_room() {
-        let (sender, mut receiver) = wait_free(2);
-        let sender = SharedSender::new(sender);
+        let (sender, mut receiver) = wait_free_shared(2);
         let givers = [0, 1_000].map(|first| {
             let sender = sender.clone();
             thread::spawn(move || (first..first + 50).for_each(|number| sender.send(number).unwrap()))

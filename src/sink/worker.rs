@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
-use super::wait_free::{SharedSender, WaitFreeReceiver, wait_free};
+use super::wait_free::{SharedSender, WaitFreeReceiver, wait_free_shared};
 
 /// Maximum number of waiting jobs: a second in which every foot of a crowd causes an event.
 const QUEUE: usize = 1024;
@@ -32,7 +32,7 @@ impl<T: Send + 'static> Worker<T> {
         name: &str,
         work: impl FnOnce(&mut WaitFreeReceiver<T>) + Send + 'static,
     ) -> io::Result<Self> {
-        let (jobs, mut queue) = wait_free(QUEUE);
+        let (jobs, mut queue) = wait_free_shared(QUEUE);
         let (finish, finished) = channel();
         let dropped = Arc::new(AtomicU64::new(0));
         let left = dropped.clone();
@@ -43,7 +43,7 @@ impl<T: Send + 'static> Worker<T> {
             let _ = finish.send(());
         })?;
         let finished = Mutex::new(finished);
-        Ok(Self { jobs: Some(SharedSender::new(jobs)), finished, thread: Some(thread), dropped })
+        Ok(Self { jobs: Some(jobs), finished, thread: Some(thread), dropped })
     }
 
     /// Queues a job; false, and counted, if the queue is full or the thread has ended.

@@ -11,7 +11,7 @@ use underfoot::recording::{Progress, Recording, Speed};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sink::{Fanout, SharedSender, Since, StereoSink, wait_free};
+use underfoot::sink::{Fanout, Since, StereoSink, wait_free_shared};
 use underfoot::source::{LinkFaults, SensorSource, TappedPackets};
 use underfoot::units::Instant;
 use underfoot_sim::{
@@ -127,8 +127,7 @@ impl PageFloor {
         let (feel, mut renderer) = renderer(RendererConfig::of(&floor, RATE));
         let scopes = renderer.scope().map(|scope| Box::new(SignalScopes::new(scope)) as Box<dyn ScopeFeed>);
         let (written, shown) = triple_buffer(&Snapshot::default());
-        let (to_floor, received) = wait_free(COMMANDS_WAITING);
-        let to_floor = SharedSender::new(to_floor);
+        let (to_floor, received) = wait_free_shared(COMMANDS_WAITING);
         let (layout, clicks) = (plan.layout.clone(), ClickWatch::default());
         let (reported, lines) = EventLines::new();
         let told = Fanout::new().with(ToWindow::new(events)).with(clicks.clone()).with(reported);

@@ -8,7 +8,7 @@ use triple_buffer::{Input, Output, triple_buffer};
 use underfoot::engine::Snapshot;
 use underfoot::mirror::{Greeting, MirrorText, PolledMirror};
 use underfoot::serve::{FloorCommand, Server};
-use underfoot::sink::{SharedSender, wait_free};
+use underfoot::sink::{SharedSender, wait_free_shared};
 use underfoot::source::{PacketTap, TappedPackets};
 use underfoot_window::edit::Document;
 use underfoot_window::link::SharedLayout;
@@ -56,8 +56,7 @@ impl Run {
         let (mirror, input) = PolledMirror::new(greeting, now);
         let input = tap.wrap(announced(input, window.layouts.clone(), LayoutCause::Served));
         let (written, snapshots) = triple_buffer(&Snapshot::default());
-        let (commands, received) = wait_free(COMMANDS_WAITING);
-        let commands = SharedSender::new(commands);
+        let (commands, received) = wait_free_shared(COMMANDS_WAITING);
         let mut server = Server::new(&greeting.floor, greeting.layout.clone(), greeting.method, input)
             .with_events(Box::new(ToWindow::new(window.events.clone())))
             .with_snapshots(written)

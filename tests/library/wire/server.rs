@@ -13,7 +13,7 @@ use underfoot::floor::{Corner, Floor, SensorId, TileId};
 use underfoot::schema::Effects;
 use underfoot::sense::{Method, Quality};
 use underfoot::serve::{Ended, FloorCommand, Server};
-use underfoot::sink::{ActuatorSink, EventSink, ManualSink, Report, SharedSender, SinkError, wait_free};
+use underfoot::sink::{ActuatorSink, EventSink, ManualSink, Report, SinkError, wait_free_shared};
 use underfoot::source::{FloorInput, Port, SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value, WidgetId};
@@ -179,8 +179,7 @@ fn apps_set_disable_and_enable_controls_over_the_wire_and_over_the_channel() {
         ControlMessage::Enable { id: id("nowhere") },
     ];
     let (server, told) = server(&[(200, EMPTY), (200, PRESSED), (100, EMPTY)], &requests);
-    let (commands, received) = wait_free(8);
-    let commands = SharedSender::new(commands);
+    let (commands, received) = wait_free_shared(8);
     let mut server = server.with_commands(received);
     commands
         .send(FloorCommand::Control(ControlMessage::Set { id: id("zoom"), value: Value::Number(0.5) }))
@@ -195,8 +194,7 @@ fn apps_set_disable_and_enable_controls_over_the_wire_and_over_the_channel() {
 #[test]
 fn a_new_layout_is_on_the_floor_at_once_and_shown_with_its_revision() {
     let (server, _told) = server(&[(300, EMPTY)], &[]);
-    let (commands, received) = wait_free(8);
-    let commands = SharedSender::new(commands);
+    let (commands, received) = wait_free_shared(8);
     let (input, mut snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
     let mut server = server.with_commands(received).with_snapshots(input);
     commands.send(FloorCommand::SetLayout(Box::new(layout("surgical")))).unwrap();
@@ -266,8 +264,7 @@ fn an_effect_can_be_tried_while_the_floor_works() {
     let (feel, renderer) = renderer(RendererConfig::of(&Floor::default(), 48_000));
     let (tell, onsets) = mpsc::channel();
     let sink = Watched(ManualSink::new(renderer, Instant::START), tell);
-    let (commands, received) = wait_free(8);
-    let commands = SharedSender::new(commands);
+    let (commands, received) = wait_free_shared(8);
     let mut server = server.with_feel(feel, Box::new(sink)).with_commands(received);
     let effect = Arc::clone(&Effects::builtin().get("double_click").unwrap().effect);
     let gesture = Box::new(Gesture::usual(&effect));

@@ -19,7 +19,7 @@ use underfoot::outgoing::write_event;
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use underfoot::sense::Method;
 use underfoot::serve::{AddressEntry, Argument, MessageDirection, Reference, Server};
-use underfoot::sink::{SharedSender, SilentSink, wait_free};
+use underfoot::sink::{SilentSink, wait_free_shared};
 use underfoot::source::UdpSource;
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{Control, Indicator, Input, Value, WidgetEvent, WidgetId};

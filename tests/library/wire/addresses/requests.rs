@@ -174,8 +174,7 @@ fn a_bundle_with_a_time_tag_waits_until_then_or_is_refused() {
 
 #[test]
 fn apps_over_the_channel_are_refused_like_others_and_labels_outlive_a_new_layout() {
-    let (commands, received) = wait_free(8);
-    let commands = SharedSender::new(commands);
+    let (commands, received) = wait_free_shared(8);
     let desk = Desk::new(layout(EVERYTHING), &Prefix::default());
     let mut server = desk.server.with_commands(received);
     let id = WidgetId::new("button");
