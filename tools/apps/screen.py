@@ -21,11 +21,28 @@ class Screen(Display):
         super().__init__(SIZE, {"HOME": home, "LC_ALL": "C.UTF-8", **(env or {})})
         self.log = open(os.path.join(folder, "app"), "w")
         self.app = subprocess.Popen(command, env=self.env, stdout=self.log, stderr=self.log)
-        found = self.x("search", "--sync", "--onlyvisible", "--class", window_class).split()
-        self.window = found[-1]
+        try:
+            self.window = self.await_window(window_class)
+        except BaseException:
+            self.close()
+            raise
         self.x("windowmove", self.window, 0, 0)
         self.x("windowsize", self.window, *SIZE)
         self.x("windowfocus", self.window)
+
+    def await_window(self, window_class, seconds=120):
+        """The last window of this class, once it is shown and stays: a program's first window may be its greeting."""
+        until, before = time.monotonic() + seconds, None
+        while self.app.poll() is None and time.monotonic() < until:
+            # The search fails if a window goes meanwhile.
+            search = ["xdotool", "search", "--onlyvisible", "--class", window_class]
+            found = subprocess.run(search, env=self.env, capture_output=True, text=True).stdout.split()
+            if found and found[-1] == before:
+                return before
+            before = found[-1] if found else None
+            time.sleep(0.5)
+        with open(self.log.name) as log:
+            raise SystemExit(f"there is no window of the class {window_class}; its program's last words: {log.read()[-1000:]}")
 
     def picture(self):
         """The pixels of the screen: rows, columns, red, green, blue."""
