@@ -44,6 +44,14 @@ class Display:
         done = subprocess.run(["xdotool", *map(str, arguments)], env=self.env, check=True, capture_output=True, timeout=timeout)
         return done.stdout.decode()
 
+    def windows(self, *criterion):
+        """The numbers of the windows shown that xdotool finds by this criterion, such as "--name" and a pattern.
+
+        None while there is none, nor if one goes during the search, which then fails.
+        """
+        search = ["xdotool", "search", "--onlyvisible", *criterion]
+        return subprocess.run(search, env=self.env, capture_output=True, text=True).stdout.split()
+
     def pixels(self):
         """The screen row by row, three bytes for each pixel: red, green, blue."""
         command = ["import", "-window", "root", "-depth", "8", "rgb:-"]

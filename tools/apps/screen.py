@@ -34,9 +34,7 @@ class Screen(Display):
         """The last window of this class, once it is shown and stays: a program's first window may be its greeting."""
         until, before = time.monotonic() + seconds, None
         while self.app.poll() is None and time.monotonic() < until:
-            # The search fails if a window goes meanwhile.
-            search = ["xdotool", "search", "--onlyvisible", "--class", window_class]
-            found = subprocess.run(search, env=self.env, capture_output=True, text=True).stdout.split()
+            found = self.windows("--class", window_class)
             if found and found[-1] == before:
                 return before
             before = found[-1] if found else None

@@ -61,11 +61,10 @@ class Window(Display):
 
     def appeared(self, name):
         """The number of the program's window of this name, once it is there."""
-        search = ["xdotool", "search", "--onlyvisible", "--name", name]
         while self.program.poll() is None:
-            found = subprocess.run(search, env=self.env, capture_output=True).stdout.split()
+            found = self.windows("--name", name)
             if found:
-                return found[-1].decode()
+                return found[-1]
             time.sleep(0.1)
         super().close()
         with open(os.path.join(self.folder, "messages")) as messages:
