@@ -37,9 +37,12 @@ enum What {
     Place(SpotArgs),
     /// Accuracy of both feet of people, and of the cursor of a foot that operates beside a heavy one.
     Feet(FeetArgs),
-    /// Accuracy of all contacts in fourteen scenes that are hard to sense, on floors of one quality or of several:
+    /// Accuracy of all contacts in fifteen scenes that are hard to sense, on floors of one quality or of several:
     /// walking, shifting weight, jumping, kneeling, sticks, wheels.
     Scenes(ScenesArgs),
+    /// Walks over one sensor that is dead, stuck, drifting or noisy: places of the feet, the time until it is found, and
+    /// sound sensors that are reported.
+    Sensors(FeetArgs),
     /// Accuracy after calibration by standing, beside that by a load cell, on floors of each law; by the number of
     /// marks, and with the time that the person needs.
     Calibration(StandArgs),
@@ -64,6 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         What::Place(args) => tables::place(args),
         What::Feet(args) => tables::feet(args),
         What::Scenes(args) => tables::scenes(args),
+        What::Sensors(args) => tables::sensors(args),
         What::Calibration(args) => tables::calibration(args),
         What::Intent(args) => intent::intent(args),
         What::Controls(args) => tables::controls(args),

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 use underfoot_lab::experiment::{
-    BesideTable, PeopleTable, PlaceTable, SceneTable, SeamTable, SeatedTable, SpotTable, StandTable, TapTable,
+    BesideTable, BrokenTable, PeopleTable, PlaceTable, SceneTable, SeamTable, SeatedTable, SpotTable,
+    StandTable, TapTable,
 };
 use underfoot_sim::SceneKind;
 
@@ -106,6 +107,18 @@ pub(super) fn feet(args: &FeetArgs) -> Result<(), Failure> {
         taps: Vec<T>,
     }
     print_json(&Tables { people: people.lines().collect(), taps: taps.lines().collect() })
+}
+
+pub(super) fn sensors(args: &FeetArgs) -> Result<(), Failure> {
+    let progress = ProgressLine::of("person", args.people);
+    let add = |table: &mut BrokenTable, number| table.add_person(args.seed.wrapping_add(number));
+    let empty = || BrokenTable::on(args.quality.quality);
+    let table = gathered(&progress, args.people, empty, add, BrokenTable::append)?;
+    if args.json {
+        return print_json(&table.lines().collect::<Vec<_>>());
+    }
+    progress.print(&table);
+    Ok(())
 }
 
 pub(super) fn controls(args: &FeetArgs) -> Result<(), Failure> {

@@ -110,6 +110,13 @@ impl Followed {
         share(self.of_two_within_5cm, self.of_two)
     }
 
+    /// Returns the share (0 to 1) of all feet that were found within 5 cm; a missed foot counts as not found.
+    #[must_use]
+    pub fn share_of_all_within_5cm(&self) -> f32 {
+        let near = |errors: &PositionErrors| errors.share_within(NEAR_M) * errors.count() as f32;
+        (near(&self.one_foot) + near(&self.two_feet)) / self.feet.max(1) as f32
+    }
+
     /// Returns the share (0 to 1) of samples with several feet down in which all were found within 5 cm.
     #[must_use]
     pub fn share_all_within_5cm(&self) -> f32 {

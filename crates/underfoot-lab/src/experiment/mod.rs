@@ -13,6 +13,7 @@
 //! | [`PlaceTable`] | accuracy of one foot, by its force and its distance from a seam | |
 //! | [`PeopleTable`] | accuracy of both feet of walking, turning and standing people | |
 //! | [`SceneTable`] | accuracy of all contacts in fifteen scenes, on floors of several qualities | |
+//! | [`BrokenTable`] | walks over one broken sensor: places of feet, time until it is found, sound ones accused | |
 //! | [`TapTable`] | influence of a heavy foot beside a region on the foot that works in it | |
 //! | [`SeatedTable`] | sliders under seated people: first answer, and changes of a value at rest | |
 //! | [`BesideTable`] | buttons tapped beside a standing foot, by the region's cursor rule | |
@@ -32,6 +33,7 @@
 //! ```
 
 mod beside;
+mod broken;
 mod chart;
 mod effect;
 mod errors;
@@ -58,6 +60,7 @@ mod two_feet;
 mod wilson;
 
 pub use beside::{BesideLine, BesideTable};
+pub use broken::{BrokenLine, BrokenTable, DRIFT_MOST_N, DRIFT_N_S, NOISE_N, SensorBreak};
 pub use effect::EffectSheet;
 pub use errors::{PositionErrors, Summary};
 pub use figure::Figure;

@@ -195,18 +195,17 @@ impl SceneLine {
         );
         let (feet, missed, extra) = (score.feet, score.share_missed(), score.share_extra());
         let (steps, changes) = (score.steps, score.swaps_per_1000_steps());
-        let inside = score.inside[0] + score.inside[1];
+        let (inside, within_5cm) = (score.inside[0] + score.inside[1], score.share_of_all_within_5cm());
         let mut errors = score.one_foot;
         errors.append(score.two_feet);
         let found = errors.count();
-        let near = errors.share_within(0.05) * found as f32;
         let cm = |share| errors.quantile(share).map(|error| 100.0 * error);
         Self {
             scene,
             floor: floor.name(),
             method,
             feet,
-            within_5cm: near / feet.max(1) as f32,
+            within_5cm,
             all_within_5cm,
             median_cm: cm(0.5),
             p95_cm: cm(0.95),
