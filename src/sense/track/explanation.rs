@@ -5,7 +5,9 @@
 //!
 //! - **Spread.** The covariance of the tile loads about their common centroid is a lower bound of that of the
 //!   pressure. One foot is long and narrow; two feet are not.
-//! - **Soles.** While a contact lands or stands, with no other foot so far, one sole or two are fitted to its loads ([`pair`](super::pair)).
+//! - **Soles.** While a contact lands or stands, with no other foot near, one sole or two are fitted to its loads
+//!   ([`pair`](super::pair)): the only evidence of a child's second foot, since a child weighs no more than a foot that
+//!   operates a control.
 //! - **Standing.** A walking step never rests. A single contact that carries a person for longer, with no other foot
 //!   near, is both feet.
 //! - **Shift.** In standing, the centre of pressure of a single foot sways by about a centimetre. It moves farther
@@ -25,7 +27,7 @@ use glam::DVec2;
 
 use super::elapsed::Elapsed;
 use super::pair::Pair;
-use super::params::pair::{ONE_SOLE, ONE_STEP};
+use super::params::pair::{LIGHT, ONE_SOLE, ONE_STEP};
 use super::state::Track;
 use super::strips::{Whole, centroid_sigma};
 use crate::sense::centroid::tile::LoadedTile;
@@ -158,15 +160,18 @@ impl Explanation {
             spread_evidence = spread.evidence();
             evidence += spread_evidence;
         }
+        let pair = foot.arrivals.fitted.pair;
+        if let Some(pair) = &pair {
+            let least = match (alone, foot.stillness.anchored_s > STANDS_S) {
+                (false, _) => LIGHT,
+                (true, true) => ONE_SOLE,
+                (true, false) => ONE_STEP,
+            };
+            let soles = (pair.log_odds - least).clamp(-MOST, MOST);
+            evidence += soles.max(spread_evidence) - spread_evidence;
+        }
         let mut shift = DVec2::ZERO;
-        let mut pair = None;
         if foot.stillness.anchored_s > 0.0 && alone {
-            pair = foot.arrivals.fitted.pair;
-            if let Some(pair) = &pair {
-                let least = if foot.stillness.anchored_s > STANDS_S { ONE_SOLE } else { ONE_STEP };
-                let soles = (pair.log_odds - least).clamp(-MOST, MOST);
-                evidence += soles.max(spread_evidence) - spread_evidence;
-            }
             if foot.stillness.anchored_s > STANDS_S {
                 let (standing, after_s) =
                     if foot.company.accompanied { (STOPPED, STOPPED_S) } else { (STANDING, STANDING_S) };

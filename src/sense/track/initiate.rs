@@ -2,7 +2,7 @@
 
 use super::params::associate::NOISE_ARM_M;
 use super::params::initiate::{ADDED_N, APART_GUESS_M, APART_M, GUESSED_M, SLIDES_M_S, STANCE_M};
-use super::params::state::{FLAT_S, LANDS_S};
+use super::params::state::{BODY_SHARE, FLAT_S, LANDS_S, LEAST_BODY_N};
 use super::params::stillness::{SHARED_SPEED_M_S, STANDS_S};
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -115,6 +115,10 @@ impl Tracker {
                     foot.covariance[FORCE][FORCE] = (0.3 * keeps.force + 5.0).powi(2);
                     foot.restart_smoothing();
                     if keeps.is_fitted {
+                        let body_n = (BODY_SHARE * (keeps.force + candidate.force)).max(LEAST_BODY_N);
+                        for foot in [&mut **foot, &mut new_track] {
+                            foot.step.body_n = foot.step.body_n.min(body_n);
+                        }
                         let (places, deviations) =
                             ([candidate.place, keeps.place], [candidate.deviation, keeps.deviation]);
                         new_track.arrivals.stance = Some(Stance::new(from, places, deviations));
@@ -219,10 +223,13 @@ impl Track {
     ) -> Option<CandidateTrack> {
         let list = tiles.list();
         let seen = Whole::of(self.tiles.as_slice().iter().map(|&position| &list[position as usize]));
-        let alone = self.stillness.anchored_s > 0.0 && seen.force > self.step.body_n && alone();
-        // A foot that has had another one near it is one foot.
+        // Both feet of a child can carry less than one that operates a control: only their soles tell them apart.
+        let lone = self.stillness.anchored_s > 0.0 && seen.force > LEAST_BODY_N && alone();
+        let alone = lone && seen.force > self.step.body_n;
+        // A foot of an adult that has had another one near it is one foot.
+        let is_known_as_one = alone && self.company.accompanied;
         let lands = !self.company.accompanied && self.age < FLAT_S;
-        if !alone || self.company.accompanied || !lands && self.stillness.anchored_s < STANDS_S {
+        if !lone || is_known_as_one || !lands && self.stillness.anchored_s < STANDS_S {
             self.arrivals.fitted = Fitted::default();
         } else if self.arrivals.fitted.refits.is_due_after(elapsed.dt) {
             let loads = LoadsAround::of(seen.middle, &self.tiles, tiles, cells);

@@ -2,10 +2,12 @@
 //!
 //! Two feet that have landed together are one contact until their places show. All pairs of soles side by side with
 //! the contact's centre of pressure between them are tried, and all single soles at that point; the mean likelihoods of
-//! both give the odds, and the likely pairs the places.
+//! both give the odds, and the likely pairs the places. Two feet that carry a person have the size of that weight; a
+//! single one that operates a control may be anybody's.
 
 use super::params::pair::{
-    APART_M, FIRST_S, FORCE_SHARES, HEADINGS, LIKELIHOODS, ON_HEEL, ON_HEEL_ALONE, ONE_SOLE, PLACED_M, STEP_M,
+    APART_M, FIRST_S, FORCE_SHARES, HEADINGS, LIKELIHOODS, ON_HEEL, ON_HEEL_ALONE, ONE_SOLE, PLACED_M,
+    SIZES_ALONE, STEP_M,
 };
 use arrayvec::ArrayVec;
 use glam::DVec2;
@@ -43,7 +45,7 @@ impl Default for Fitted {
 /// Number of pairs tried, and of single soles.
 const PAIRS: usize = HEADINGS * ON_HEEL.len() * APART_M.len() * FORCE_SHARES.len();
 
-const ALONE: usize = 2 * HEADINGS * ON_HEEL_ALONE.len();
+const ALONE: usize = 2 * HEADINGS * ON_HEEL_ALONE.len() * SIZES_ALONE.len();
 
 impl Pair {
     /// Whether two soles are likelier than one by more than one may reach by its own shape, and both have a place.
@@ -99,14 +101,16 @@ fn pair(number: usize, centre: DVec2, force: f64) -> [Sole; 2] {
     let (apart, number) = (APART_M[number % APART_M.len()], number / APART_M.len());
     let share = FORCE_SHARES[number % FORCE_SHARES.len()];
     let aside = heading.perp() * apart;
-    let sole = |centre, force| Sole { centre, heading, on_heel, force };
+    let size = Sole::size_of(force);
+    let sole = |centre, force| Sole { centre, heading, on_heel, force, size };
     [sole(centre - aside * share, force * (1.0 - share)), sole(centre + aside * (1.0 - share), force * share)]
 }
 
 /// Single sole number `number` of all that are tried.
 fn sole(number: usize, centre: DVec2, force: f64) -> Sole {
-    let (heading, heel) = (number % (2 * HEADINGS), number / (2 * HEADINGS));
-    Sole { centre, heading: heading_of(heading), on_heel: ON_HEEL_ALONE[heel], force }
+    let (heading, number) = (heading_of(number % (2 * HEADINGS)), number / (2 * HEADINGS));
+    let (on_heel, number) = (ON_HEEL_ALONE[number % ON_HEEL_ALONE.len()], number / ON_HEEL_ALONE.len());
+    Sole { centre, heading, on_heel, force, size: SIZES_ALONE[number] }
 }
 
 fn heading_of(number: usize) -> DVec2 {

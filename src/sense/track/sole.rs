@@ -1,9 +1,11 @@
 //! The load of a standing sole on the tiles around it.
 //!
 //! A foot presses with heel and forefoot, a fixed distance apart; its centre of pressure divides the load between the
-//! two. Each of them is a round patch.
+//! two. Each of them is a round patch. A child's sole is smaller in all its measures.
 
-use super::params::sole::{BLOTCH, BLOTCH_LEAST, FOREFOOT_HALF_M, HEEL_HALF_M, LENGTH_M, NOISE_N, SWAY_M};
+use super::params::sole::{
+    ADULT_N, BLOTCH, BLOTCH_LEAST, FOREFOOT_HALF_M, HEEL_HALF_M, LEAST_SIZE, LENGTH_M, NOISE_N, SWAY_M,
+};
 use glam::DVec2;
 
 use super::Cells;
@@ -28,6 +30,15 @@ pub(super) struct Sole {
     pub on_heel: f64,
     /// In newtons.
     pub force: f64,
+    /// Its length, in soles of an adult.
+    pub size: f64,
+}
+
+impl Sole {
+    /// The size of the soles of a person who weighs `weight` newtons: grown-up from [`ADULT_N`] on.
+    pub(super) fn size_of(weight: f64) -> f64 {
+        (weight / ADULT_N).cbrt().clamp(LEAST_SIZE, 1.0)
+    }
 }
 
 /// The loads of the tiles around a contact.
@@ -93,11 +104,13 @@ impl LoadsAround {
 
     /// Adds the load of `sole`, and its variance.
     fn press(&self, sole: &Sole, expected: &mut [Load; AROUND]) {
-        let heel = sole.centre - sole.heading * ((1.0 - sole.on_heel) * LENGTH_M);
-        let forefoot = sole.centre + sole.heading * (sole.on_heel * LENGTH_M);
+        let along = sole.heading * (sole.size * LENGTH_M);
+        let heel = sole.centre - along * (1.0 - sole.on_heel);
+        let forefoot = sole.centre + along * sole.on_heel;
         for (place, half, share) in
             [(heel, HEEL_HALF_M, sole.on_heel), (forefoot, FOREFOOT_HALF_M, 1.0 - sole.on_heel)]
         {
+            let half = sole.size * half;
             let force = sole.force * share;
             let at = place - self.corner;
             let slices = |along: f64, pitch: f64| -> [Slice; SIDE] {
@@ -129,5 +142,17 @@ impl Load {
             moment: (tile.centroid - tile.centre).as_dvec2() * force,
             variance: NOISE_N * NOISE_N + noise * noise,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn soles_grow_with_the_weight_up_to_an_adults() {
+        // The feet of a child of 24 kg are 18 cm long, those of an adult 26 cm.
+        assert!((Sole::size_of(235.0) - 0.695).abs() < 0.001);
+        assert_eq!((Sole::size_of(0.0), Sole::size_of(2000.0)), (LEAST_SIZE, 1.0));
     }
 }
