@@ -292,7 +292,7 @@ impl BrokenScore {
 impl fmt::Display for BrokenTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let floors = self.scores[0].floors;
-        writeln!(
+        write!(
             f,
             "one broken sensor under the tile that bears most, {} walks of {floors} people, {} sensors\n\
              {:16}within 5 cm{:19}found on  after  sound ones\n\
@@ -306,9 +306,9 @@ impl fmt::Display for BrokenTable {
             value.map_or_else(|| "-".into(), |value| format!("{value:.digits$}"))
         };
         for line in self.lines() {
-            writeln!(
+            write!(
                 f,
-                "{:10}{:>7.1}%{:>6}%{:>7.2}%{:>7.2}%{:>12}{:>7}{:>12}",
+                "\n{:10}{:>7.1}%{:>6}%{:>7.2}%{:>7.2}%{:>12}{:>7}{:>12}",
                 line.sensor,
                 100.0 * line.within_5cm,
                 number(line.all_within_5cm.map(|share| 100.0 * f64::from(share)), 1),
