@@ -2,7 +2,7 @@
 
 use super::params::associate::NOISE_ARM_M;
 use super::params::initiate::{ADDED_N, APART_GUESS_M, APART_M, GUESSED_M, SLIDES_M_S, STANCE_M};
-use super::params::state::{BODY_SHARE, FLAT_S, LANDS_S, LEAST_BODY_N};
+use super::params::state::{FLAT_S, LANDS_S, LEAST_BODY_N};
 use super::params::stillness::{SHARED_SPEED_M_S, STANDS_S};
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -14,7 +14,7 @@ use super::outline::FanExtents;
 use super::pair::{Fitted, Pair};
 use super::sole::LoadsAround;
 use super::stance::Stance;
-use super::state::{FORCE, Track};
+use super::state::{FORCE, Track, body_n_of};
 use super::strips::Whole;
 use super::touchdown::Touchdown;
 use super::{Cells, Tracker, first_of_least};
@@ -115,7 +115,7 @@ impl Tracker {
                     foot.covariance[FORCE][FORCE] = (0.3 * keeps.force + 5.0).powi(2);
                     foot.restart_smoothing();
                     if keeps.is_fitted {
-                        let body_n = (BODY_SHARE * (keeps.force + candidate.force)).max(LEAST_BODY_N);
+                        let body_n = body_n_of(keeps.force + candidate.force);
                         for foot in [&mut **foot, &mut new_track] {
                             foot.step.body_n = foot.step.body_n.min(body_n);
                         }

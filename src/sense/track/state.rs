@@ -37,6 +37,11 @@ pub(super) fn tiles_of<'a>(feet: impl IntoIterator<Item = &'a Track>) -> ArrayVe
     all
 }
 
+/// Force above which feet of a person carry the person (N), from the largest load of the person's feet together (N).
+pub(super) fn body_n_of(weight: f64) -> f64 {
+    (BODY_SHARE * weight).max(LEAST_BODY_N)
+}
+
 /// One foot on the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
@@ -123,11 +128,7 @@ impl Track {
     /// Force above which the feet of the same person carry the person: the steps of a light person lower it.
     pub(super) fn body_of_owner(&self) -> f64 {
         let stepped = self.step.travel > ROLL_M && self.step.peak > LEAST_BODY_N;
-        if stepped {
-            self.step.body_n.min((BODY_SHARE * self.step.peak).max(LEAST_BODY_N))
-        } else {
-            self.step.body_n
-        }
+        if stepped { self.step.body_n.min(body_n_of(self.step.peak)) } else { self.step.body_n }
     }
 
     pub(super) fn force(&self) -> f64 {

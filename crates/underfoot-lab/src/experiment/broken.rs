@@ -68,9 +68,10 @@ impl SensorBreak {
     }
 }
 
-/// Rate of a drifting sensor (N/s), and its last value (N): water on a board (our choice).
+/// Rate at which a drifting sensor's force grows (N/s): water on a board (our choice).
 pub const DRIFT_N_S: f32 = 1.0;
-/// See [`DRIFT_N_S`].
+
+/// Maximum additional force of a drifting sensor (N) (our choice).
 pub const DRIFT_MOST_N: f32 = 40.0;
 
 /// Standard deviation of a noisy sensor (N): a loose shield (our choice).
@@ -259,9 +260,9 @@ pub struct BrokenLine {
     pub missed: f32,
     /// Number of contacts without a foot, as a share of the feet.
     pub extra: f32,
-    /// Number of floors, and of those that reported the broken sensor.
+    /// Number of floors.
     pub floors: u64,
-    /// See `floors`.
+    /// Number of floors that reported the broken sensor.
     pub found: usize,
     /// Median time from the break to its first report, in seconds, of the floors that reported it.
     pub found_after_s: Option<f32>,
