@@ -17,6 +17,7 @@ use underfoot_cluster::auth::{AuthRefusals, AuthSession, Key, Role};
 use underfoot_cluster::node::{Border, BorderCounters, NeighbourSeal, NeighbourSession};
 
 use crate::hall::{Boards, layout, listening, script};
+use crate::steady::while_time_is_kept;
 
 const RATE: u32 = 48_000;
 
@@ -90,35 +91,39 @@ impl Computer {
 
 #[test]
 fn what_belongs_to_one_computer_is_felt_on_the_tiles_of_both() {
-    let floor = listening();
-    let layout = layout(&floor);
-    let [west, east] = [("sw", 1), ("se", 2)].map(|(id, nonce)| Computer::serve(&floor, &layout, id, nonce));
-    let homes = |board| vec![floor.home(board).unwrap().listen.unwrap()];
-    let targets: Vec<_> = floor.boards.iter().map(homes).collect();
-    let press = r#"Press(widget: "drive", force_n: 110, hold_ms: 300),"#;
-    let steps =
-        format!(r#"Wait(ms: 1500), Enter(from: South, at: (6.1, 2.2)), {press} {press} Leave(to: South)"#);
-    let people = format!("Scenario(title: \"Drive\", steps: [{steps}])");
-    Boards::start(&floor, script(&people, &floor, &layout), targets).finish();
-    thread::sleep(Duration::from_millis(200));
-    let given = east.counters.given();
-    let west_tile = TileId::new(5, 3);
-    let (felt, late) = (west.counters.felt(), west.counters.late());
-    let other =
-        (west.counters.lost(), west.counters.untimed(), west.counters.refused(), east.counters.unsent());
-    assert!(given > 0 && felt > 0, "{given} given, {felt} felt, {late} late, {other:?}");
-    // Cues later than 50 ms, on a busy machine, are counted.
-    assert_eq!((felt + late, other), (given, (0, 0, 0, 0)));
-    assert_eq!(west.counters.given(), 0, "the west's own controls have rested");
-    // Datagrams become stale if the machine stalls for 250 ms.
-    let stale =
-        |of: &Computer| AuthRefusals { stale: of.neighbours.refusals().stale, ..AuthRefusals::default() };
-    assert_eq!(west.neighbours.refusals(), stale(&west), "neighbours refuse nothing else of each other");
-    assert_eq!(east.neighbours.refusals(), stale(&east));
-    let peaks = [west.peak(west_tile), east.peak(TileId::new(6, 3)), west.peak(TileId::new(0, 0))];
-    assert!(peaks[0] > 0.0 && peaks[1] > 0.0 && peaks[2] == 0.0, "{peaks:?}");
-    west.session.stop();
-    east.session.stop();
+    while_time_is_kept(|| {
+        let floor = listening();
+        let layout = layout(&floor);
+        let [west, east] =
+            [("sw", 1), ("se", 2)].map(|(id, nonce)| Computer::serve(&floor, &layout, id, nonce));
+        let homes = |board| vec![floor.home(board).unwrap().listen.unwrap()];
+        let targets: Vec<_> = floor.boards.iter().map(homes).collect();
+        let press = r#"Press(widget: "drive", force_n: 110, hold_ms: 300),"#;
+        let steps = format!(
+            r#"Wait(ms: 1500), Enter(from: South, at: (6.1, 2.2)), {press} {press} Leave(to: South)"#
+        );
+        let people = format!("Scenario(title: \"Drive\", steps: [{steps}])");
+        Boards::start(&floor, script(&people, &floor, &layout), targets).finish();
+        thread::sleep(Duration::from_millis(200));
+        let given = east.counters.given();
+        let west_tile = TileId::new(5, 3);
+        let (felt, late) = (west.counters.felt(), west.counters.late());
+        let other =
+            (west.counters.lost(), west.counters.untimed(), west.counters.refused(), east.counters.unsent());
+        assert!(given > 0 && felt > 0, "{given} given, {felt} felt, {late} late, {other:?}");
+        // Cues later than 50 ms, on a busy machine, are counted.
+        assert_eq!((felt + late, other), (given, (0, 0, 0, 0)));
+        assert_eq!(west.counters.given(), 0, "the west's own controls have rested");
+        // Datagrams become stale if the machine stalls for 250 ms.
+        let stale =
+            |of: &Computer| AuthRefusals { stale: of.neighbours.refusals().stale, ..AuthRefusals::default() };
+        assert_eq!(west.neighbours.refusals(), stale(&west), "neighbours refuse nothing else of each other");
+        assert_eq!(east.neighbours.refusals(), stale(&east));
+        let peaks = [west.peak(west_tile), east.peak(TileId::new(6, 3)), west.peak(TileId::new(0, 0))];
+        assert!(peaks[0] > 0.0 && peaks[1] > 0.0 && peaks[2] == 0.0, "{peaks:?}");
+        west.session.stop();
+        east.session.stop();
+    });
 }
 
 /// The hall with a board for each row of tiles, which sends to the computer of the western area.
@@ -135,20 +140,27 @@ fn wide_boards() -> Floor {
 
 #[test]
 fn an_area_is_sensed_by_boards_of_its_neighbour_alone() {
-    let floor = wide_boards();
-    let layout = layout(&floor);
-    let [west, east] = [("sw", 1), ("se", 2)].map(|(id, nonce)| Computer::serve(&floor, &layout, id, nonce));
-    let homes = |board| vec![floor.home(board).unwrap().listen.unwrap()];
-    let targets: Vec<_> = floor.boards.iter().map(homes).collect();
-    assert!(targets.iter().flatten().all(|to| *to != floor.area("se").unwrap().listen.unwrap()));
-    let empty = "Scenario(title: \"Empty\", steps: [Wait(ms: 20000)])";
-    let _boards = Boards::start(&floor, script(empty, &floor, &layout), targets);
-    let end = std::time::Instant::now() + Duration::from_secs(10);
-    while east.session.snapshot().floor.counters.frames < 200 {
-        let refused = east.neighbours.refusals();
-        assert!(std::time::Instant::now() < end, "{:?}, {refused:?}", east.session.snapshot().floor.counters);
-        thread::sleep(Duration::from_millis(20));
-    }
-    west.session.stop();
-    east.session.stop();
+    while_time_is_kept(|| {
+        let floor = wide_boards();
+        let layout = layout(&floor);
+        let [west, east] =
+            [("sw", 1), ("se", 2)].map(|(id, nonce)| Computer::serve(&floor, &layout, id, nonce));
+        let homes = |board| vec![floor.home(board).unwrap().listen.unwrap()];
+        let targets: Vec<_> = floor.boards.iter().map(homes).collect();
+        assert!(targets.iter().flatten().all(|to| *to != floor.area("se").unwrap().listen.unwrap()));
+        let empty = "Scenario(title: \"Empty\", steps: [Wait(ms: 20000)])";
+        let _boards = Boards::start(&floor, script(empty, &floor, &layout), targets);
+        let end = std::time::Instant::now() + Duration::from_secs(10);
+        while east.session.snapshot().floor.counters.frames < 200 {
+            let refused = east.neighbours.refusals();
+            assert!(
+                std::time::Instant::now() < end,
+                "{:?}, {refused:?}",
+                east.session.snapshot().floor.counters
+            );
+            thread::sleep(Duration::from_millis(20));
+        }
+        west.session.stop();
+        east.session.stop();
+    });
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use rosc::{OscMessage, OscPacket, OscType, decoder, encoder};
 
 use crate::hall::{AREAS, Hall, LAYOUT, Program};
+use crate::steady::while_time_is_kept;
 
 /// An app.
 struct App {
@@ -63,77 +64,81 @@ fn running() -> (Hall, Vec<Program>, crate::hall::Boards) {
 
 #[test]
 fn a_request_reaches_the_node_of_its_control_and_is_answered_with_what_came_of_it() {
-    let (hall, mut nodes, _boards) = running();
-    let app = App::of(&hall);
-    // The nodes have no layout but the gateway's.
-    hall.await_layout(1);
-    app.ask("widget/level/set", vec![OscType::Float(0.5)]);
-    hall.lines.find(0, "level at 0.5", |line| line.json["id"] == "level" && line.json["value"] == 0.5);
-    app.ask("widget/level/get", vec![]);
-    assert_eq!(app.answer("widget/level/value"), [OscType::Float(0.5)]);
-    app.ask("widget/nothing/set", vec![OscType::Float(0.5)]);
-    let why = app.answer("error");
-    assert!(format!("{why:?}").contains("widget/nothing/set"), "{why:?}");
-    // Patterns match the controls of all nodes.
-    app.ask("widget/*/disable", vec![]);
-    app.ask("widget/ticket/get", vec![]);
-    let state = app.answer("widget/ticket/state");
-    assert_eq!(state[0], OscType::Int(0), "{state:?}");
-    app.ask("widget/*/enable", vec![]);
-    app.ask("mute/set", vec![OscType::Bool(true)]);
-    app.ask("mute/get", vec![]);
-    assert_eq!(app.answer("mute")[0], OscType::Int(1));
-    app.ask("widget/ticket/disable", vec![]);
-    // The gateway does not keep a setting that its node has not confirmed.
-    app.ask("widget/ticket/get", vec![]);
-    assert_eq!(app.answer("widget/ticket/state")[0], OscType::Int(0));
-    // A restarted node has the same state as before; a lost one is the reason for a refusal.
-    nodes[0].0.kill().unwrap();
-    nodes[0].0.wait().unwrap();
-    let from = hall.lines.len();
-    hall.lines.find(0, "lost", |line| line.area() == Some(("sw", "lost")));
-    app.ask("widget/ticket/label", vec![OscType::String("New".into())]);
-    let why = app.answer("error");
-    assert!(format!("{why:?}").contains("\\\"sw\\\" is lost"), "{why:?}");
-    nodes[0] = hall.bare_node("sw");
-    hall.await_live("sw", from);
-    let end = Instant::now() + Duration::from_secs(10);
-    loop {
+    while_time_is_kept(|| {
+        let (hall, mut nodes, _boards) = running();
+        let app = App::of(&hall);
+        // The nodes have no layout but the gateway's.
+        hall.await_layout(1);
+        app.ask("widget/level/set", vec![OscType::Float(0.5)]);
+        hall.lines.find(0, "level at 0.5", |line| line.json["id"] == "level" && line.json["value"] == 0.5);
+        app.ask("widget/level/get", vec![]);
+        assert_eq!(app.answer("widget/level/value"), [OscType::Float(0.5)]);
+        app.ask("widget/nothing/set", vec![OscType::Float(0.5)]);
+        let why = app.answer("error");
+        assert!(format!("{why:?}").contains("widget/nothing/set"), "{why:?}");
+        // Patterns match the controls of all nodes.
+        app.ask("widget/*/disable", vec![]);
         app.ask("widget/ticket/get", vec![]);
-        let state = app.answer_within("widget/ticket/state", Duration::from_millis(300));
-        if state.as_ref().is_some_and(|state| state[0] == OscType::Int(0)) {
-            break;
+        let state = app.answer("widget/ticket/state");
+        assert_eq!(state[0], OscType::Int(0), "{state:?}");
+        app.ask("widget/*/enable", vec![]);
+        app.ask("mute/set", vec![OscType::Bool(true)]);
+        app.ask("mute/get", vec![]);
+        assert_eq!(app.answer("mute")[0], OscType::Int(1));
+        app.ask("widget/ticket/disable", vec![]);
+        // The gateway does not keep a setting that its node has not confirmed.
+        app.ask("widget/ticket/get", vec![]);
+        assert_eq!(app.answer("widget/ticket/state")[0], OscType::Int(0));
+        // A restarted node has the same state as before; a lost one is the reason for a refusal.
+        nodes[0].0.kill().unwrap();
+        nodes[0].0.wait().unwrap();
+        let from = hall.lines.len();
+        hall.lines.find(0, "lost", |line| line.area() == Some(("sw", "lost")));
+        app.ask("widget/ticket/label", vec![OscType::String("New".into())]);
+        let why = app.answer("error");
+        assert!(format!("{why:?}").contains("\\\"sw\\\" is lost"), "{why:?}");
+        nodes[0] = hall.bare_node("sw");
+        hall.await_live("sw", from);
+        let end = Instant::now() + Duration::from_secs(10);
+        loop {
+            app.ask("widget/ticket/get", vec![]);
+            let state = app.answer_within("widget/ticket/state", Duration::from_millis(300));
+            if state.as_ref().is_some_and(|state| state[0] == OscType::Int(0)) {
+                break;
+            }
+            assert!(Instant::now() < end, "{state:?}");
         }
-        assert!(Instant::now() < end, "{state:?}");
-    }
+    });
 }
 
 #[test]
 fn a_layout_that_changes_is_on_all_nodes_or_on_none() {
-    let (hall, mut nodes, _boards) = running();
-    hall.await_layout(1);
-    let app = App::of(&hall);
-    let exists = |id: &str| {
-        app.ask(&format!("widget/{id}/label"), vec![OscType::String("Here".into())]);
-        app.ask(&format!("widget/{id}/get"), vec![]);
-    };
-    // No node receives a file with an error.
-    hall.write_layout(&LAYOUT.replace("\"ticket\", kind: \"button\"", "\"ticket\", kind: \"buton\""));
-    hall.await_notice("The last good layout stays");
-    hall.write_layout(&LAYOUT.replace("\"ticket\"", "\"entry\"").replace("\"door\"", "\"gatehouse\""));
-    hall.await_layout(2);
-    for id in ["entry", "gatehouse"] {
-        exists(id);
-        assert_eq!(app.answer(&format!("widget/{id}/state"))[5], OscType::String("Here".into()));
-    }
-    // A node that starts later receives it.
-    nodes[2].0.kill().unwrap();
-    nodes[2].0.wait().unwrap();
-    hall.lines.find(0, "lost", |line| line.area() == Some(("nw", "lost")));
-    let from = hall.lines.len();
-    nodes[2] = hall.bare_node("nw");
-    hall.await_live("nw", from);
-    hall.await_node_layout(2, 5);
-    app.ask("widget/level/get", vec![]);
-    assert_eq!(app.answer("widget/level/value").len(), 1);
+    while_time_is_kept(|| {
+        let (hall, mut nodes, _boards) = running();
+        hall.await_layout(1);
+        let app = App::of(&hall);
+        let exists = |id: &str| {
+            app.ask(&format!("widget/{id}/label"), vec![OscType::String("Here".into())]);
+            app.ask(&format!("widget/{id}/get"), vec![]);
+        };
+        // No node receives a file with an error.
+        hall.write_layout(&LAYOUT.replace("\"ticket\", kind: \"button\"", "\"ticket\", kind: \"buton\""));
+        hall.await_notice("The last good layout stays");
+        hall.write_layout(&LAYOUT.replace("\"ticket\"", "\"entry\"").replace("\"door\"", "\"gatehouse\""));
+        hall.await_layout(2);
+        for id in ["entry", "gatehouse"] {
+            exists(id);
+            assert_eq!(app.answer(&format!("widget/{id}/state"))[5], OscType::String("Here".into()));
+        }
+        // A node that starts later receives it.
+        nodes[2].0.kill().unwrap();
+        nodes[2].0.wait().unwrap();
+        hall.lines.find(0, "lost", |line| line.area() == Some(("nw", "lost")));
+        let from = hall.lines.len();
+        nodes[2] = hall.bare_node("nw");
+        hall.await_live("nw", from);
+        hall.await_node_layout(2, 5);
+        app.ask("widget/level/get", vec![]);
+        assert_eq!(app.answer("widget/level/value").len(), 1);
+    });
 }

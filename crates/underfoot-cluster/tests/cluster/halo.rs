@@ -12,6 +12,7 @@ use underfoot::source::{ForwardCounters, UdpSource};
 use underfoot::wire::LinkState;
 
 use crate::hall::{AREAS, Boards, Hall, layout, listening, script};
+use crate::steady::while_time_is_kept;
 
 /// One computer of the hall, in this process.
 fn serve(floor: &Floor, id: &str) -> (Session, Arc<ForwardCounters>) {
@@ -49,61 +50,67 @@ const EMPTY: &str = r#"Scenario(title: "Empty", steps: [Wait(ms: 20000)])"#;
 
 #[test]
 fn what_a_neighbour_forwards_is_sensed_and_its_death_marks_those_tiles_alone() {
-    let floor = listening();
-    let (east, _) = serve(&floor, "se");
-    let (west, forwarded) = serve(&floor, "sw");
-    let homes = |board| vec![floor.home(board).unwrap().listen.unwrap()];
-    let targets: Vec<_> = floor.boards.iter().map(homes).collect();
-    let _boards = Boards::start(&floor, script(EMPTY, &floor, &layout(&floor)), targets);
-    // (4, 2) is the south-west's, near the border, on a board that only its home forwards to the south-east.
-    let live = |snapshot: &SessionSnapshot| {
-        snapshot.floor.counters.frames > 200 && quality(&floor, "se", snapshot, (4, 2)) == Quality::Live
-    };
-    await_state(&east, "live beyond the border", live);
-    assert!(forwarded.sent() > 0);
-    assert_eq!(forwarded.unsent(), 0);
-    drop(west);
-    let gone = |snapshot: &SessionSnapshot| quality(&floor, "se", snapshot, (4, 2)) == Quality::Stale;
-    let snapshot = await_state(&east, "stale beyond the border", gone);
-    assert_eq!(snapshot.floor.link, LinkState::Partial);
-    for own in [(6, 2), (9, 4)] {
-        assert_eq!(quality(&floor, "se", &snapshot, own), Quality::Live, "{own:?}");
-    }
-    // It recovers without a restart of the other.
-    let (_west, _) = serve(&floor, "sw");
-    await_state(&east, "live again", live);
+    while_time_is_kept(|| {
+        let floor = listening();
+        let (east, _) = serve(&floor, "se");
+        let (west, forwarded) = serve(&floor, "sw");
+        let homes = |board| vec![floor.home(board).unwrap().listen.unwrap()];
+        let targets: Vec<_> = floor.boards.iter().map(homes).collect();
+        let _boards = Boards::start(&floor, script(EMPTY, &floor, &layout(&floor)), targets);
+        // (4, 2) is the south-west's, near the border, on a board that only its home forwards to the south-east.
+        let live = |snapshot: &SessionSnapshot| {
+            snapshot.floor.counters.frames > 200 && quality(&floor, "se", snapshot, (4, 2)) == Quality::Live
+        };
+        await_state(&east, "live beyond the border", live);
+        assert!(forwarded.sent() > 0);
+        assert_eq!(forwarded.unsent(), 0);
+        drop(west);
+        let gone = |snapshot: &SessionSnapshot| quality(&floor, "se", snapshot, (4, 2)) == Quality::Stale;
+        let snapshot = await_state(&east, "stale beyond the border", gone);
+        assert_eq!(snapshot.floor.link, LinkState::Partial);
+        for own in [(6, 2), (9, 4)] {
+            assert_eq!(quality(&floor, "se", &snapshot, own), Quality::Live, "{own:?}");
+        }
+        // It recovers without a restart of the other.
+        let (_west, _) = serve(&floor, "sw");
+        await_state(&east, "live again", live);
+    });
 }
 
 #[test]
 fn a_board_that_sends_to_both_is_sensed_once() {
-    let floor = listening();
-    let (east, _) = serve(&floor, "se");
-    let (_west, _) = serve(&floor, "sw");
-    let both: Vec<_> = ["sw", "se"].iter().map(|id| floor.area(id).unwrap().listen.unwrap()).collect();
-    let targets = vec![both; floor.boards.len()];
-    let _boards = Boards::start(&floor, script(EMPTY, &floor, &layout(&floor)), targets);
-    let told = await_state(&east, "sent twice", |snapshot| snapshot.floor.counters.duplicate > 1000);
-    let counters = told.floor.counters;
-    assert_eq!(quality(&floor, "se", &told, (4, 2)), Quality::Live);
-    assert!(counters.restarts == 0 && counters.packets > counters.duplicate, "{counters:?}");
+    while_time_is_kept(|| {
+        let floor = listening();
+        let (east, _) = serve(&floor, "se");
+        let (_west, _) = serve(&floor, "sw");
+        let both: Vec<_> = ["sw", "se"].iter().map(|id| floor.area(id).unwrap().listen.unwrap()).collect();
+        let targets = vec![both; floor.boards.len()];
+        let _boards = Boards::start(&floor, script(EMPTY, &floor, &layout(&floor)), targets);
+        let told = await_state(&east, "sent twice", |snapshot| snapshot.floor.counters.duplicate > 1000);
+        let counters = told.floor.counters;
+        assert_eq!(quality(&floor, "se", &told, (4, 2)), Quality::Live);
+        assert!(counters.restarts == 0 && counters.packets > counters.duplicate, "{counters:?}");
+    });
 }
 
 #[test]
 fn a_control_works_while_the_neighbour_that_senses_the_other_half_of_it_is_dead() {
-    let hall = Hall::open();
-    // No node serves the south-west, which is near the border.
-    let _nodes: Vec<_> = AREAS.iter().filter(|area| **area != "sw").map(|area| hall.node(area)).collect();
-    let press = r#"Scenario(title: "Drive", steps: [Wait(ms: 1500), Enter(from: East, at: (9.4, 8.2)),
+    while_time_is_kept(|| {
+        let hall = Hall::open();
+        // No node serves the south-west, which is near the border.
+        let _nodes: Vec<_> = AREAS.iter().filter(|area| **area != "sw").map(|area| hall.node(area)).collect();
+        let press = r#"Scenario(title: "Drive", steps: [Wait(ms: 1500), Enter(from: East, at: (9.4, 8.2)),
         Press(widget: "door", force_n: 140, hold_ms: 300), Leave(to: East)])"#;
-    let boards = hall.boards(hall.script(press), &[]);
-    hall.await_live("se", 0);
-    hall.await_live("ne", 0);
-    let done = |what: &'static str| {
-        move |line: &crate::lines::Line| {
-            line.done().is_some_and(|(id, done)| (&*id, &*done) == ("door", what))
-        }
-    };
-    hall.lines.find(0, "door pressed", done("pressed"));
-    hall.lines.find(0, "door released", done("released"));
-    boards.finish();
+        let boards = hall.boards(hall.script(press), &[]);
+        hall.await_live("se", 0);
+        hall.await_live("ne", 0);
+        let done = |what: &'static str| {
+            move |line: &crate::lines::Line| {
+                line.done().is_some_and(|(id, done)| (&*id, &*done) == ("door", what))
+            }
+        };
+        hall.lines.find(0, "door pressed", done("pressed"));
+        hall.lines.find(0, "door released", done("released"));
+        boards.finish();
+    });
 }

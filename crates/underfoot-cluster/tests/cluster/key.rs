@@ -6,6 +6,7 @@ use std::path::Path;
 use underfoot_cluster::auth::Key;
 
 use crate::hall::{Hall, Program};
+use crate::steady::while_time_is_kept;
 
 const FLOOR: &str = r#"Floor(
     columns: 12,
@@ -94,17 +95,19 @@ fn a_key_that_is_named_and_missing_is_not_made() {
 
 #[test]
 fn computers_that_are_one_share_a_key_beside_the_floor_file() {
-    // Namespaces count as several computers.
-    if std::env::var_os("UNDERFOOT_NETNS").is_some() {
-        return;
-    }
-    let hall = Hall::with_key(None);
-    let key = fs::read_to_string(hall.file("hall.key")).unwrap();
-    let _node = hall.bare_node("nw");
-    let empty = r#"Scenario(title: "Empty", steps: [Wait(ms: 20000)])"#;
-    let _boards = hall.boards(hall.script(empty), &[]);
-    hall.await_live("nw", 0);
-    assert_eq!(fs::read_to_string(hall.file("hall.key")).unwrap(), key);
-    let made = hall.said().iter().filter(|line| line.contains("Made a key")).count();
-    assert!(made <= 1, "one program makes it");
+    while_time_is_kept(|| {
+        // Namespaces count as several computers.
+        if std::env::var_os("UNDERFOOT_NETNS").is_some() {
+            return;
+        }
+        let hall = Hall::with_key(None);
+        let key = fs::read_to_string(hall.file("hall.key")).unwrap();
+        let _node = hall.bare_node("nw");
+        let empty = r#"Scenario(title: "Empty", steps: [Wait(ms: 20000)])"#;
+        let _boards = hall.boards(hall.script(empty), &[]);
+        hall.await_live("nw", 0);
+        assert_eq!(fs::read_to_string(hall.file("hall.key")).unwrap(), key);
+        let made = hall.said().iter().filter(|line| line.contains("Made a key")).count();
+        assert!(made <= 1, "one program makes it");
+    });
 }

@@ -21,4 +21,5 @@ mod netns;
 mod offline;
 mod same;
 mod soak;
+mod steady;
 mod units;

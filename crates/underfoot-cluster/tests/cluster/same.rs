@@ -1,12 +1,10 @@
 //! The gateway reports the same as one computer for the whole floor.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::panic::{catch_unwind, resume_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 use crate::hall::{AREAS, Hall, Program, say};
 use crate::lines::Line;
+use crate::steady::while_time_is_kept;
 
 /// Four people who together cross each border in both directions and operate each control, `rounds` times.
 pub(crate) fn crowd(rounds: usize) -> String {
@@ -227,48 +225,9 @@ impl Difference {
     }
 }
 
-/// Time (ms) for which a machine stands still if it may take the floor from a program, which takes 100 ms.
-const STANDS_STILL_MS: u64 = 50;
-
-/// Longest time (ms) for which this process was kept from running while `work` ran.
-fn stood_still_ms(work: impl FnOnce()) -> u64 {
-    let is_over = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        let watch = scope.spawn(|| {
-            let (mut last, mut longest) = (Instant::now(), Duration::ZERO);
-            while !is_over.load(Ordering::Relaxed) {
-                std::thread::sleep(Duration::from_millis(1));
-                longest = longest.max(last.elapsed());
-                last = Instant::now();
-            }
-            longest.as_millis() as u64
-        });
-        work();
-        is_over.store(true, Ordering::Relaxed);
-        watch.join().unwrap()
-    })
-}
-
-/// Lets people walk, and compares the reports. A machine that stands still for a moment takes the floor from some of the
-/// programs: then they walk again, and after three times there is no result.
-fn walk_about(rounds: usize, is_exact: bool) {
-    for _ in 0..3 {
-        let mut result = Ok(());
-        let longest = stood_still_ms(|| {
-            result = catch_unwind(|| walk_once(rounds, is_exact));
-        });
-        match result {
-            Ok(()) => return,
-            Err(failure) if longest < STANDS_STILL_MS => resume_unwind(failure),
-            Err(_) => say(&format!("the machine stood still for {longest} ms")),
-        }
-    }
-    println!("not run: the machine stood still for {STANDS_STILL_MS} ms and more in each of three walks");
-}
-
 /// Runs people for `rounds`, and compares the reports; contacts, places and times only if `is_exact`, for which the
 /// machine must have time for six computers.
-fn walk_once(rounds: usize, is_exact: bool) {
+fn walk_about(rounds: usize, is_exact: bool) {
     let hall = Hall::open();
     let nodes: Vec<Program> = AREAS.iter().map(|area| hall.node(area)).collect();
     // Two computers for the whole floor differ as well: each derives the millisecond of a packet from its arrival.
@@ -323,12 +282,12 @@ fn walk_once(rounds: usize, is_exact: bool) {
 
 #[test]
 fn events_of_four_people_who_cross_all_borders_are_those_of_one_computer() {
-    walk_about(1, false);
+    while_time_is_kept(|| walk_about(1, false));
 }
 
 /// With `UNDERFOOT_NETNS`, each node runs in a network namespace of its own.
 #[test]
 #[ignore = "two minutes in real time"]
 fn the_same_for_two_minutes_with_names_places_and_times() {
-    walk_about(8, true);
+    while_time_is_kept(|| walk_about(8, true));
 }
