@@ -25,6 +25,7 @@ mod queue;
 mod repeats;
 mod report;
 mod slow;
+mod stuck;
 mod trouble;
 mod visit;
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::averages::BlockReadings;
 use super::drift::Drift;
+use super::stuck::{Demands, STILL_N, Track};
 use super::trouble::{Sensor, Trouble};
 use super::{RangeEnd, plate};
 use crate::sense::centroid::corners::{KnownCorner, has_lifted};
@@ -10,24 +11,13 @@ use crate::units::Instant;
 /// Maximum time between blocks for a comparison (s); after a longer gap everything restarts.
 pub(super) const GAP_S: f32 = 0.5;
 
-/// Time for which a sensor must be still although its plate requires otherwise to be stuck (s): half a step.
-const STUCK_S: f32 = 0.3;
-
 /// Time for which a load over one sensor may have no response, with no other load near, on plates that may be limp
 /// (s): a standing person sways, and stands on more than a point.
 const LONE_S: f32 = 1.0;
 
-/// A sensor is still if its averages stay within this force and this share of its reading: its converter's noise (2
-/// mV are 0.3 % of the force) with ample margin.
-const STILL_N: f32 = 1.0;
-const STILL_SHARE: f32 = 0.02;
-
-/// Ratio of the maximum range of a still sensor's readings to that of its averages, including noise and hum.
-const STIRRED: f32 = 10.0;
-
-/// Change of the required load of a corner, besides the plate estimate's error, that a working sensor must follow
-/// (N).
-const CHANGE_N: f32 = 10.0;
+/// Share of the load that a corner has lost to which the other corners of its plate respond at least if it has lifted:
+/// its diagonal then bears as much (our choice, with a margin for creep).
+const OF_LIFTED: f32 = 0.5;
 
 /// Maximum distance of a faulty sensor from the plate's requirement to count as right again (N).
 const RIGHT_N: f32 = 3.0;
@@ -63,18 +53,17 @@ impl Block {
     pub(super) fn is_loaded(&self) -> bool {
         self.means.iter().sum::<f32>().abs() > LOADED_N
     }
-}
 
-/// Extremes of a sensor and of its neighbours since the sensor last moved.
-#[derive(Clone, Copy, Debug, Default)]
-struct Track {
-    begun: bool,
-    own: (f32, f32),
-    expected: (f32, f32),
-    /// Largest load on the other corners.
-    load: f32,
-    /// Time since it should have moved (s).
-    overdue: f32,
+    /// Whether this sensor has carried no current throughout, and less than on the empty floor, although no other
+    /// corner bears what a lifted one would have lost.
+    fn is_open_at(&self, corner: usize) -> bool {
+        let lost = -self.means[corner];
+        let responds = |other: usize| self.means[other].abs() > OF_LIFTED * lost;
+        self.ends[corner] == RangeEnd::Low
+            && has_lifted(-lost)
+            && self.spreads[corner] < STILL_N
+            && ![corner ^ 1, corner ^ 2, corner ^ 3].into_iter().any(responds)
+    }
 }
 
 impl Slow {
@@ -108,10 +97,14 @@ impl Slow {
             }
         }
         let suspect = sensors.map(|sensor| sensor.trouble() == Some(Trouble::Offset));
+        let mut overdue = [false; 4];
         for corner in 0..4 {
             let others = [corner ^ 1, corner ^ 2, corner ^ 3];
             let load: f32 = others.iter().map(|&other| means[other].abs()).sum();
             let (sensor, own) = (&mut sensors[corner], means[corner]);
+            if block.is_open_at(corner) {
+                sensor.find(Trouble::Open, own);
+            }
             if others.iter().any(|&other| out[other]) {
                 self.tracks[corner] = Track::default();
                 // The required reading is unknown, except on an empty tile.
@@ -145,39 +138,19 @@ impl Slow {
                 self.tracks[corner] = Track::default();
             } else {
                 // With its diagonal in the air, it may rightly read more than the expected value.
-                let demands =
-                    (expected, if evidence == KnownCorner::AtLeast { f32::INFINITY } else { expected });
-                if self.tracks[corner].follow(own, block.spreads[corner], demands, load, block.seconds) {
-                    sensor.find(Trouble::Stuck, own);
-                }
+                let most = if evidence == KnownCorner::AtLeast { f32::INFINITY } else { expected };
+                let neighbours = [means[corner ^ 1], means[corner ^ 2]];
+                let demands = Demands { least: expected, most, neighbours, load };
+                overdue[corner] =
+                    self.tracks[corner].follow(own, block.spreads[corner], demands, block.seconds);
             }
         }
-    }
-}
-
-impl Track {
-    /// Adds a block with the least and the greatest reading that its plate allows; returns true if the sensor is
-    /// stuck.
-    fn follow(&mut self, own: f32, spread: f32, (least, most): (f32, f32), load: f32, seconds: f32) -> bool {
-        let widened = |range: (f32, f32), value: f32| (range.0.min(value), range.1.max(value));
-        let reach = widened(self.own, own);
-        let still = STILL_N + STILL_SHARE * own.abs();
-        // A reading that moved and returned within the block was not still.
-        if !self.begun || reach.1 - reach.0 > still || spread > STIRRED * still {
-            let here = |value: f32| (value, value);
-            *self = Self { begun: true, own: here(own), expected: here(least), load, overdue: 0.0 };
-            return false;
+        // One stuck sensor makes the readings of the others wrong too. Those that have not moved either, since they
+        // bear little, look alike until they move.
+        let mut late = (0..4).filter(|&corner| overdue[corner]);
+        if let (Some(corner), None) = (late.next(), late.next()) {
+            sensors[corner].find(Trouble::Stuck, means[corner]);
         }
-        self.own = reach;
-        self.expected = widened(self.expected, least);
-        self.load = self.load.max(load);
-        let slack = CHANGE_N + plate::SLACK * self.load;
-        // The sensor has not only failed to move before: its present reading is wrong.
-        let amiss = (least - own).max(own - most);
-        if self.expected.1 - self.expected.0 > slack && amiss > 0.5 * slack {
-            self.overdue += seconds;
-        }
-        self.overdue >= STUCK_S
     }
 }
 
@@ -185,16 +158,54 @@ impl Track {
 mod tests {
     use super::*;
 
+    const RIGID: (f32, f32) = (0.0, 0.1);
+
+    /// The troubles of four sensors that read `rest`, and then for a second `fallen`, at these ends of their ranges.
+    fn found(
+        rest: [f32; 4],
+        fallen: [f32; 4],
+        ends: [RangeEnd; 4],
+        twist: (f32, f32),
+    ) -> [Option<Trouble>; 4] {
+        let (mut slow, mut sensors) = (Slow::default(), [Sensor::default(); 4]);
+        let block = |means, ends| Block { means, lows: means, spreads: [0.5; 4], ends, seconds: 0.064 };
+        let mut judge = |block: &Block| slow.judge(block, true, twist, &mut sensors);
+        (0..5).for_each(|_| judge(&block(rest, [RangeEnd::Within; 4])));
+        (0..16).for_each(|_| judge(&block(fallen, ends)));
+        sensors.map(|sensor| sensor.trouble())
+    }
+
     #[test]
-    fn a_corner_that_bears_more_with_its_diagonal_in_the_air_is_not_stuck() {
-        // As for a person who steps off a tile over its edge: in half a second the requirement falls from 130 to 72
-        // N.
-        let is_stuck = |most: fn(f32) -> f32| {
-            let mut track = Track::default();
-            let mut demands = (0..8_u8).map(|block| (130.0 - 12.0 * f32::from(block)).max(72.0));
-            demands.any(|least| track.follow(164.5, 1.0, (least, most(least)), 90.0, 0.064))
-        };
-        assert!(is_stuck(|least| least));
-        assert!(!is_stuck(|_| f32::INFINITY));
+    fn a_sensor_that_goes_dead_on_an_empty_tile_is_found_and_its_diagonal_is_not_accused() {
+        // Each corner bears 14 N of the plate; creep has left a newton or two on the others.
+        let rest = [0.0, 1.5, -1.0, 2.0];
+        let fallen = [-14.0, 1.5, -1.0, 2.0];
+        let low = [RangeEnd::Low, RangeEnd::Within, RangeEnd::Within, RangeEnd::Within];
+        assert_eq!(found(rest, fallen, low, RIGID), [Some(Trouble::Open), None, None, None]);
+        // The same fall within the range: a plug with a bad contact. Which of the diagonal is wrong is open.
+        let [own, .., across] = found(rest, fallen, [RangeEnd::Within; 4], RIGID);
+        assert_eq!(across, None, "it has not moved, and neither have its neighbours");
+        assert_ne!(own, Some(Trouble::Stuck));
+    }
+
+    #[test]
+    fn a_corner_that_a_foot_on_the_opposite_one_lifts_is_not_open() {
+        let low = [RangeEnd::Low, RangeEnd::Within, RangeEnd::Within, RangeEnd::Within];
+        assert_eq!(found([0.0; 4], [-14.0, 3.0, 3.0, 60.0], low, RIGID), [None; 4]);
+    }
+
+    #[test]
+    fn a_sensor_that_does_not_follow_a_load_that_moves_its_neighbours_is_stuck() {
+        let within = [RangeEnd::Within; 4];
+        let [own, others @ ..] = found([0.0; 4], [0.0, 60.0, 70.0, 65.0], within, RIGID);
+        assert_eq!((own, others), (Some(Trouble::Stuck), [None; 3]));
+    }
+
+    #[test]
+    fn of_two_sensors_that_have_not_moved_neither_is_accused() {
+        // A foot over sw of a plate that bends. On a less limp one se and nw would bear 40 N each, and both have stayed
+        // where they were.
+        let within = [RangeEnd::Within; 4];
+        assert_eq!(found([0.0, 1.4, 0.7, 0.0], [114.0, 1.7, 0.7, 5.6], within, (0.4, 0.7)), [None; 4]);
     }
 }
