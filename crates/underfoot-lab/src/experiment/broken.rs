@@ -329,15 +329,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_dead_sensor_is_found_and_costs_places_and_sound_floors_report_none() {
+    fn a_dead_sensor_is_found_before_a_step_and_no_sound_one_is_reported() {
         let mut table = BrokenTable::on(FloorQuality::Slight);
         table.add_person(3).unwrap();
         let lines: Vec<BrokenLine> = table.lines().collect();
         assert_eq!(lines.len(), SensorBreak::ALL.len());
         let (sound, dead) = (&lines[0], &lines[1]);
         assert!(sound.within_5cm > 0.9 && sound.found == 0, "{table}");
-        assert_eq!(dead.found, 1, "{table}");
-        assert!(dead.within_5cm < sound.within_5cm && dead.feet == sound.feet, "{table}");
+        assert!(dead.found == 1 && dead.found_after_s < Some(0.3), "{table}");
+        assert!(dead.within_5cm > 0.95 * sound.within_5cm && dead.feet == sound.feet, "{table}");
+        assert!(lines.iter().all(|line| line.accused_per_min == Some(0.0)), "{table}");
         let mut both = table.clone();
         both.append(table);
         assert_eq!(both.lines().next().map(|line| line.feet), Some(2 * sound.feet));
