@@ -1,4 +1,7 @@
 //! Six programs that keep time on one machine, which must not stand still meanwhile.
+//!
+//! It stands still for others while threads of real-time priority take all processors: Linux leaves other threads 50 ms
+//! of each second then.
 
 use std::fs::OpenOptions;
 use std::io::Write;
