@@ -35,8 +35,8 @@ fn stood_still_ms(work: impl FnOnce()) -> u64 {
     })
 }
 
-/// Runs a test that fails where the machine takes time from one of the programs. If it fails and the machine stood still
-/// meanwhile, it runs again; after three times there is no result, and a file says so, which `./dev test` prints.
+/// Runs a test that fails where the machine takes time from one of the programs. If it fails and the machine stood
+/// still meanwhile, it runs again; after three times there is no result, and a file says so, which `./dev test` prints.
 ///
 /// # Panics
 ///
