@@ -2,7 +2,7 @@
 
 use super::averages::BlockReadings;
 use super::drift::Drift;
-use super::stuck::{Demands, STILL_N, Track};
+use super::stuck::{Demands, Extremes, STILL_N};
 use super::trouble::{Sensor, Trouble};
 use super::{RangeEnd, plate};
 use crate::sense::centroid::corners::{KnownCorner, has_lifted};
@@ -29,7 +29,7 @@ const LOADED_N: f32 = 6.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slow {
     ended: Option<Instant>,
-    tracks: [Track; 4],
+    extremes: [Extremes; 4],
     /// Time for which one sensor alone has read a load (s).
     lone_s: f32,
     pub(super) drift: Drift,
@@ -72,7 +72,7 @@ impl Slow {
         let seconds = self.ended.replace(at).map(|ended| at.since(ended).as_secs_f32());
         let seconds = seconds.filter(|&seconds| seconds <= GAP_S);
         let Some((seconds, BlockReadings { means, lows, spreads, ends })) = seconds.zip(readings) else {
-            self.tracks = Default::default();
+            self.extremes = Default::default();
             self.drift.interrupt();
             return None;
         };
@@ -106,7 +106,7 @@ impl Slow {
                 sensor.find(Trouble::Open, own);
             }
             if others.iter().any(|&other| out[other]) {
-                self.tracks[corner] = Track::default();
+                self.extremes[corner] = Extremes::default();
                 // The required reading is unknown, except on an empty tile.
                 let empty = others.iter().all(|&other| out[other] || means[other].abs() <= RIGHT_N);
                 let is_right = empty && own.abs() <= RIGHT_N && !ends[corner].is_odd();
@@ -135,14 +135,14 @@ impl Slow {
             // basis for the requirement of the others.
             if ends[corner] == RangeEnd::High || sensor.is_out() || others.iter().any(|&other| suspect[other])
             {
-                self.tracks[corner] = Track::default();
+                self.extremes[corner] = Extremes::default();
             } else {
                 // With its diagonal in the air, it may rightly read more than the expected value.
                 let most = if evidence == KnownCorner::AtLeast { f32::INFINITY } else { expected };
                 let neighbours = [means[corner ^ 1], means[corner ^ 2]];
                 let demands = Demands { least: expected, most, neighbours, load };
                 overdue[corner] =
-                    self.tracks[corner].follow(own, block.spreads[corner], demands, block.seconds);
+                    self.extremes[corner].follow(own, block.spreads[corner], demands, block.seconds);
             }
         }
         // One stuck sensor makes the readings of the others wrong too. Those that have not moved either, since they

@@ -26,17 +26,18 @@ const WITH_NEIGHBOUR: f32 = 0.35;
 /// The other sensors of a tile, as far as they show the load of one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Demands {
-    /// Least and greatest reading that the plate allows.
+    /// Least and greatest reading that the plate allows (N).
     pub(super) least: f32,
     pub(super) most: f32,
+    /// Readings of its two neighbours (N).
     pub(super) neighbours: [f32; 2],
-    /// Load on all other corners.
+    /// Load on all other corners (N).
     pub(super) load: f32,
 }
 
 /// Extremes of a sensor and of its neighbours since the sensor last moved.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Track {
+pub(super) struct Extremes {
     begun: bool,
     own: (f32, f32),
     expected: (f32, f32),
@@ -48,7 +49,7 @@ pub(super) struct Track {
     overdue: f32,
 }
 
-impl Track {
+impl Extremes {
     /// Adds a block in which the other sensors show these demands; returns true if the sensor is stuck.
     pub(super) fn follow(&mut self, own: f32, spread: f32, demands: Demands, seconds: f32) -> bool {
         let Demands { least, most, neighbours, load } = demands;
@@ -95,11 +96,11 @@ mod tests {
         // As for a person who steps off a tile over its edge: in half a second the requirement falls from 130 to 72
         // N.
         let is_stuck = |most: fn(f32) -> f32| {
-            let mut track = Track::default();
+            let mut extremes = Extremes::default();
             let mut demands = (0..8_u8).map(|block| (130.0 - 12.0 * f32::from(block)).max(72.0));
             demands.any(|least| {
                 let demands = Demands { least, most: most(least), neighbours: [least, 0.0], load: 90.0 };
-                track.follow(164.5, 1.0, demands, 0.064)
+                extremes.follow(164.5, 1.0, demands, 0.064)
             })
         };
         assert!(is_stuck(|least| least));
