@@ -11,3 +11,8 @@ pub(crate) fn for_each_batch<T: Send>(batches: &mut [T], _: usize, work: impl Fn
 pub(crate) fn with_pool_awake(_: usize, frame: impl FnOnce() + Send) {
     frame();
 }
+
+#[cfg(feature = "net")]
+pub(crate) fn on_each_thread(work: impl Fn() + Sync) {
+    work();
+}

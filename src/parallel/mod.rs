@@ -12,8 +12,12 @@ mod alone;
 #[cfg(feature = "threads")]
 mod pool;
 
+#[cfg(all(feature = "net", not(feature = "threads")))]
+pub(crate) use self::alone::on_each_thread;
 #[cfg(not(feature = "threads"))]
 pub(crate) use self::alone::{for_each, for_each_batch, with_pool_awake};
+#[cfg(all(feature = "net", feature = "threads"))]
+pub(crate) use self::pool::on_each_thread;
 #[cfg(feature = "threads")]
 pub use self::pool::{ThreadPool, ThreadPoolError};
 #[cfg(feature = "threads")]

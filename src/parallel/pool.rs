@@ -82,6 +82,16 @@ pub(crate) fn with_pool_awake(feet: usize, frame: impl FnOnce() + Send) {
     wake_up.during(others, frame);
 }
 
+/// Calls `work` once on each thread of the calling thread's pool; on the calling thread if it is in none.
+#[cfg(feature = "net")]
+pub(crate) fn on_each_thread(work: impl Fn() + Sync) {
+    if rayon::current_thread_index().is_some() {
+        rayon::broadcast(|_| work());
+    } else {
+        work();
+    }
+}
+
 fn is_divided(feet: usize) -> bool {
     feet >= MIN_FEET && rayon::current_thread_index().is_some() && rayon::current_num_threads() > 1
 }

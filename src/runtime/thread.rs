@@ -19,7 +19,9 @@ use crate::layout::Layout;
 use crate::parallel::ThreadPool;
 use crate::sense::Method;
 use crate::serve::{FloorCommand, Neighbours, Server};
-use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, SinkError, WaitFreeReceiver, claim_priority};
+#[cfg(feature = "threads")]
+use crate::sink::claim_priority;
+use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, RealTime, SinkError, WaitFreeReceiver};
 use crate::source::FloorInput;
 use crate::units::{HostClock, Instant};
 use crate::wire::Prefix;
@@ -114,7 +116,11 @@ fn serve(
     let _ = ready.send(Ok(()));
     if realtime {
         // Last, since new threads inherit the priority.
-        claim_priority(Rank::Sensing);
+        let mut priority = RealTime::claim(Rank::Sensing);
+        server.watch_load(move || {
+            priority.look();
+            priority.given_up()
+        });
     }
     let served = catch_unwind(AssertUnwindSafe(|| server.run(&stop)));
     // Before the outputs close, which may take a while.

@@ -22,6 +22,8 @@ mod osc;
 mod periodic;
 #[cfg(feature = "net")]
 mod priority;
+#[cfg(feature = "net")]
+mod realtime;
 mod report;
 mod silent;
 mod since;
@@ -77,6 +79,8 @@ pub use crack_rate::{CrackNews, CrackRateLimiter};
 pub use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
 #[cfg(feature = "net")]
 pub use priority::{Rank, claim_priority, step_back};
+#[cfg(feature = "net")]
+pub use realtime::RealTime;
 
 /// A sink for the renderer's samples.
 pub trait ActuatorSink {

@@ -26,15 +26,27 @@ pub fn claim_priority(rank: Rank) -> Priority {
 /// without such a priority (supported on Linux only).
 pub fn step_back() {
     #[cfg(target_os = "linux")]
-    {
-        use thread_priority::{
-            NormalThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy, set_thread_priority_and_policy,
-            thread_native_id,
-        };
-        let idle = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Idle);
-        if let Err(error) = set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Min, idle) {
-            tracing::debug!("a thread that should go after others goes beside them: {error:?}");
-        }
+    set_ordinary(thread_priority::NormalThreadSchedulePolicy::Idle, thread_priority::ThreadPriority::Min);
+}
+
+/// Gives the calling thread the priority of ordinary threads again (Linux only).
+pub(super) fn leave_priority() {
+    #[cfg(target_os = "linux")]
+    if let Ok(niceness_0) = thread_priority::ThreadPriorityValue::try_from(49) {
+        let priority = thread_priority::ThreadPriority::Crossplatform(niceness_0);
+        set_ordinary(thread_priority::NormalThreadSchedulePolicy::Other, priority);
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn set_ordinary(
+    policy: thread_priority::NormalThreadSchedulePolicy,
+    priority: thread_priority::ThreadPriority,
+) {
+    use thread_priority::{ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id};
+    let policy = ThreadSchedulePolicy::Normal(policy);
+    if let Err(error) = set_thread_priority_and_policy(thread_native_id(), priority, policy) {
+        tracing::debug!("the system refuses {policy:?} to a thread: {error:?}");
     }
 }
 

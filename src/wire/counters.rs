@@ -60,6 +60,9 @@ pub struct LinkCounters {
     pub cleaned: u64,
     /// Times a sensor developed a trouble: broken, stuck, drifted too far, noisy.
     pub sensor_troubles: u64,
+    /// Times the thread that reads packets gave up its real-time priority, since it took a whole processor and did not
+    /// keep up (Linux only).
+    pub overruns: u64,
 }
 
 impl LinkCounters {
@@ -98,6 +101,7 @@ impl Add for LinkCounters {
             denied: self.denied + other.denied,
             cleaned: self.cleaned + other.cleaned,
             sensor_troubles: self.sensor_troubles + other.sensor_troubles,
+            overruns: self.overruns + other.overruns,
         }
     }
 }

@@ -304,4 +304,10 @@ fn report(counters: &LinkCounters, dropped: u64) {
             counters.overflowed
         );
     }
+    if counters.overruns > 0 {
+        errln!(
+            "The sensing thread gave up its real-time priority {} times, since the machine is too slow.",
+            counters.overruns
+        );
+    }
 }

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
 use underfoot::schema;
-use underfoot::sink::{Rank, claim_priority};
+use underfoot::sink::{Rank, RealTime};
 use underfoot::source::SourceError;
 use underfoot::wire::{SensorEncoder, SensorFormat};
 use underfoot_sim::{self as sim, FloorBuild, Pace, SimFloor, SimulatedSensors, SimulatedSource};
@@ -173,7 +173,7 @@ impl Args {
         let stop = stop_flag()?;
         let until = self.seconds.map(|seconds| Instant::now() + seconds);
         // Boards send on time.
-        claim_priority(Rank::Sensing);
+        let mut realtime = RealTime::claim(Rank::Sensing);
         let mut sent = 0;
         loop {
             let (script, rehearsed) = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
@@ -189,6 +189,7 @@ impl Args {
                     Err(SourceError::Ended) => break,
                     Err(error) => return Err(error.into()),
                 };
+                realtime.look();
                 let datagram = encoder.encode(&packet).map_err(|error| Failure::Other(error.to_string()))?;
                 for to in targets.get(usize::from(packet.board)).into_iter().flatten() {
                     let Some(socket) = sockets.get(to) else { continue };

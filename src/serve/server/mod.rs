@@ -113,6 +113,9 @@ pub struct Server {
     sensors: SensorWatch,
     off: OffWatch,
     snapshots: Option<Input<Snapshot>>,
+    /// Looks at the load of the thread; returns the number of overruns so far.
+    load: Option<Box<dyn FnMut() -> u64 + Send>>,
+    overruns: u64,
     /// Time of the last frame.
     seen: Instant,
     /// Time of the last snapshot.
@@ -146,6 +149,8 @@ impl Server {
             sensors: SensorWatch::default(),
             off: OffWatch::default(),
             snapshots: None,
+            load: None,
+            overruns: 0,
             seen: Instant::START,
             shown: Instant::START,
             is_stale: false,
@@ -202,6 +207,12 @@ impl Server {
         self
     }
 
+    /// Calls `load` ten times a second on the thread that runs the server: it looks at the load of that thread and
+    /// returns how often the thread has been too slow so far ([`LinkCounters::overruns`]).
+    pub fn watch_load(&mut self, load: impl FnMut() -> u64 + Send + 'static) {
+        self.load = Some(Box::new(load));
+    }
+
     /// Returns the engine for inspection.
     #[must_use]
     pub fn engine(&self) -> &Engine {
@@ -212,7 +223,7 @@ impl Server {
     #[must_use]
     pub fn counters(&self) -> LinkCounters {
         let Answers { denied, cleaned, .. } = self.answers;
-        let own = LinkCounters { denied, cleaned, ..LinkCounters::default() };
+        let own = LinkCounters { denied, cleaned, overruns: self.overruns, ..LinkCounters::default() };
         self.source.counters() + self.assembler.counters() + own
     }
 
@@ -347,6 +358,9 @@ impl Server {
         self.sensors.note_troubles(&self.assembler, now);
         if !self.sensors.is_due(now) {
             return;
+        }
+        if let Some(load) = &mut self.load {
+            self.overruns = load();
         }
         if let Some(status) = self.haptics.device_news(now) {
             self.outputs.report(&Report::Device(now, Cow::Borrowed(status)));

@@ -205,6 +205,10 @@ pub(crate) fn run(args: Args) -> Result<(), ClusterFailure> {
         (counters.overflowed, "packets that the system dropped, since its buffer was full"),
         (counters.refused(), "datagrams refused"),
         (counters.jumps, "loads that changed faster than a body changes them, not believed for 100 ms"),
+        (
+            counters.overruns,
+            "times that sensing gave up its real-time priority, since the machine is too slow",
+        ),
         (crossed.late(), "cues of neighbours older than 50 ms, not played"),
         (crossed.lost(), "cues of neighbours that never came"),
         (crossed.untimed(), "cues of neighbours whose clock was not known yet, not played"),

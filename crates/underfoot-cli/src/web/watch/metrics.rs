@@ -60,6 +60,11 @@ impl ObservedFloor {
         to.counter("datagrams", "Datagrams received, valid or not", counters.datagrams)?;
         to.counter("packets", "Packets of boards that were accepted", counters.packets)?;
         to.counter("frames", "Frames completed", counters.frames)?;
+        to.counter(
+            "priority_given_up",
+            "Times that sensing gave up its real-time priority, since it did not keep up",
+            counters.overruns,
+        )?;
         let by_kind = |(kind, count)| ([("kind", kind)], count);
         to.counters("packet_faults", "Packets that were not used as they came, by the kind of fault", {
             faults(counters).map(by_kind)

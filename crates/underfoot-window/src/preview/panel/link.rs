@@ -98,7 +98,7 @@ fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
 }
 
 /// Name, count, and whether a non-zero count is a fault.
-fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 22] {
+fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 23] {
     [
         ("datagrams", counters.datagrams, false),
         ("sensor packets", counters.packets, false),
@@ -122,6 +122,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 22] {
         ("boards that stood still", counters.frozen, true),
         ("tiles that repeated readings", counters.repeats, true),
         ("loads that jumped", counters.jumps, true),
+        ("times too slow for real time", counters.overruns, true),
     ]
 }
 
