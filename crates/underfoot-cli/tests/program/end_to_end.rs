@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use crate::ports::free_port;
+use crate::steady::{note_overload, while_time_is_kept};
 
 pub(super) fn underfoot() -> Command {
     underfoot_at(Path::new(env!("CARGO_BIN_EXE_underfoot")))
@@ -119,58 +120,65 @@ pub(super) fn terminate(child: &Child) {
 
 #[test]
 fn two_processes_over_udp_give_the_same_events_as_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let address = format!("127.0.0.1:{}", free_port());
-    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../../layouts/map.ron");
-    let wav = folder.path().join("out.wav");
-    let mut server = underfoot()
-        .args(["run", layout, "--listen", &address, "--json", "--latency", "--no-osc", "--wav"])
-        .arg(&wav)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .map(Served)
-        .unwrap();
-    let mut chatter = BufReader::new(server.0.stderr.take().unwrap());
-    let mut line = String::new();
-    chatter.read_line(&mut line).unwrap();
-    assert!(line.starts_with("Listening on"), "{line}");
+    // Events may be 20 ms apart.
+    while_time_is_kept(15, || {
+        let folder = tempfile::tempdir().unwrap();
+        let address = format!("127.0.0.1:{}", free_port());
+        let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../../layouts/map.ron");
+        let wav = folder.path().join("out.wav");
+        let mut server = underfoot()
+            .args(["run", layout, "--listen", &address, "--json", "--latency", "--no-osc", "--wav"])
+            .arg(&wav)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .map(Served)
+            .unwrap();
+        let mut chatter = BufReader::new(server.0.stderr.take().unwrap());
+        let mut line = String::new();
+        chatter.read_line(&mut line).unwrap();
+        assert!(line.starts_with("Listening on"), "{line}");
 
-    let begun = Instant::now();
-    let paper = ["--quality", "paper"];
-    let simulated = underfoot().args(["simulate", "--send", &address]).args(paper).output().unwrap();
-    assert!(simulated.status.success(), "{}", said(&simulated));
-    let took = begun.elapsed();
-    assert!(took > Duration::from_secs(10), "the session is played in real time, not in {took:?}");
-    terminate(&server.0);
-    let lines = std::io::read_to_string(server.0.stdout.take().unwrap()).unwrap();
-    assert!(server.0.wait().unwrap().success());
-    let report = std::io::read_to_string(chatter).unwrap();
-    assert!(report.contains("From packet to click"), "{report}");
+        let begun = Instant::now();
+        let paper = ["--quality", "paper"];
+        let simulated = underfoot().args(["simulate", "--send", &address]).args(paper).output().unwrap();
+        assert!(simulated.status.success(), "{}", said(&simulated));
+        let took = begun.elapsed();
+        assert!(took > Duration::from_secs(10), "the session is played in real time, not in {took:?}");
+        terminate(&server.0);
+        let lines = std::io::read_to_string(server.0.stdout.take().unwrap()).unwrap();
+        assert!(server.0.wait().unwrap().success());
+        let report = std::io::read_to_string(chatter).unwrap();
+        if report.contains("gave up its real-time priority") {
+            note_overload();
+        }
+        assert!(report.contains("From packet to click"), "{report}");
 
-    let session = underfoot().args(["session", "--out"]).arg(folder.path()).args(paper).output().unwrap();
-    assert!(session.status.success(), "{}", said(&session));
-    let alone = events(&std::fs::read_to_string(folder.path().join("events.jsonl")).unwrap());
-    let apart = events(&lines);
-    // On a starved machine packets are delayed and dropped, which may cost the slider a step or two on its way;
-    // otherwise the events are equal one by one and 0.01 ms apart.
-    let told = |events: Vec<(f64, String, String, Value)>| {
-        let mut told: Vec<_> =
-            events.into_iter().map(|(t_s, id, kind, _)| (t_s, format!("{id} {kind}"))).collect();
-        told.dedup_by(|next, last| next.1 == last.1);
-        told
-    };
-    let (apart, alone) = (told(apart), told(alone));
-    let names = |events: &[(f64, String)]| events.iter().map(|(_, name)| name.clone()).collect::<Vec<_>>();
-    assert_eq!(names(&apart), names(&alone));
-    // The server's clock starts with the server, so times count from the first event.
-    for (apart_event, alone_event) in apart.iter().zip(&alone) {
-        let difference = (apart_event.0 - apart[0].0) - (alone_event.0 - alone[0].0);
-        assert!(difference.abs() < 0.02, "{difference} s apart: {apart_event:?}");
-    }
-    let (_, channels) = channels(&wav);
-    assert_eq!(channels.len(), 36);
-    assert!(peak(&channels[12]) > 0.05, "the click on `home` was recorded");
+        let session = underfoot().args(["session", "--out"]).arg(folder.path()).args(paper).output().unwrap();
+        assert!(session.status.success(), "{}", said(&session));
+        let alone = events(&std::fs::read_to_string(folder.path().join("events.jsonl")).unwrap());
+        let apart = events(&lines);
+        // On a starved machine packets are delayed and dropped, which may cost the slider a step or two on its way;
+        // otherwise the events are equal one by one and 0.01 ms apart.
+        let told = |events: Vec<(f64, String, String, Value)>| {
+            let mut told: Vec<_> =
+                events.into_iter().map(|(t_s, id, kind, _)| (t_s, format!("{id} {kind}"))).collect();
+            told.dedup_by(|next, last| next.1 == last.1);
+            told
+        };
+        let (apart, alone) = (told(apart), told(alone));
+        let names =
+            |events: &[(f64, String)]| events.iter().map(|(_, name)| name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(&apart), names(&alone));
+        // The server's clock starts with the server, so times count from the first event.
+        for (apart_event, alone_event) in apart.iter().zip(&alone) {
+            let difference = (apart_event.0 - apart[0].0) - (alone_event.0 - alone[0].0);
+            assert!(difference.abs() < 0.02, "{difference} s apart: {apart_event:?}");
+        }
+        let (_, channels) = channels(&wav);
+        assert_eq!(channels.len(), 36);
+        assert!(peak(&channels[12]) > 0.05, "the click on `home` was recorded");
+    });
 }
 
 // N14

@@ -7,6 +7,8 @@ mod pages;
 mod ports;
 #[path = "../../../../tests/support/sender.rs"]
 mod sender;
+#[path = "../../../../tests/support/steady.rs"]
+mod steady;
 #[path = "../../../../tests/support/units.rs"]
 mod units;
 #[path = "../../../../tests/support/xvfb.rs"]

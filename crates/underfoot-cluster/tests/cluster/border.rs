@@ -16,7 +16,7 @@ use underfoot::units::Instant;
 use underfoot_cluster::auth::{AuthRefusals, AuthSession, Key, Role};
 use underfoot_cluster::node::{Border, BorderCounters, NeighbourSeal, NeighbourSession};
 
-use crate::hall::{Boards, layout, listening, script};
+use crate::hall::{Boards, STANDS_STILL_MS, layout, listening, script};
 use crate::steady::while_time_is_kept;
 
 const RATE: u32 = 48_000;
@@ -91,7 +91,7 @@ impl Computer {
 
 #[test]
 fn what_belongs_to_one_computer_is_felt_on_the_tiles_of_both() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let floor = listening();
         let layout = layout(&floor);
         let [west, east] =
@@ -140,7 +140,7 @@ fn wide_boards() -> Floor {
 
 #[test]
 fn an_area_is_sensed_by_boards_of_its_neighbour_alone() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let floor = wide_boards();
         let layout = layout(&floor);
         let [west, east] =

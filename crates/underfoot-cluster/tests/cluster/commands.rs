@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use rosc::{OscMessage, OscPacket, OscType, decoder, encoder};
 
-use crate::hall::{AREAS, Hall, LAYOUT, Program};
+use crate::hall::{AREAS, Hall, LAYOUT, Program, STANDS_STILL_MS};
 use crate::steady::while_time_is_kept;
 
 /// An app.
@@ -64,7 +64,7 @@ fn running() -> (Hall, Vec<Program>, crate::hall::Boards) {
 
 #[test]
 fn a_request_reaches_the_node_of_its_control_and_is_answered_with_what_came_of_it() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let (hall, mut nodes, _boards) = running();
         let app = App::of(&hall);
         // The nodes have no layout but the gateway's.
@@ -113,7 +113,7 @@ fn a_request_reaches_the_node_of_its_control_and_is_answered_with_what_came_of_i
 
 #[test]
 fn a_layout_that_changes_is_on_all_nodes_or_on_none() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let (hall, mut nodes, _boards) = running();
         hall.await_layout(1);
         let app = App::of(&hall);

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::hall::{AREAS, Boards, Hall, Program, say};
+use crate::hall::{AREAS, Boards, Hall, Program, STANDS_STILL_MS, say};
 use crate::lines::Line;
 use crate::steady::while_time_is_kept;
 
@@ -155,7 +155,7 @@ fn twenty(harm: Harm) {
 // C1
 #[test]
 fn what_a_killed_node_held_is_cancelled_and_it_comes_back_without_ghosts() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         rounds(Harm::Kill, 1);
     });
 }
@@ -163,7 +163,7 @@ fn what_a_killed_node_held_is_cancelled_and_it_comes_back_without_ghosts() {
 // C2, R10
 #[test]
 fn what_a_frozen_node_held_is_cancelled_and_it_comes_back_without_ghosts() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         rounds(Harm::Freeze, 1);
     });
 }
@@ -171,7 +171,7 @@ fn what_a_frozen_node_held_is_cancelled_and_it_comes_back_without_ghosts() {
 // C3
 #[test]
 fn what_a_node_held_that_is_cut_off_is_cancelled_and_it_comes_back_without_ghosts() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         rounds(Harm::Cut, 1);
     });
 }
@@ -179,7 +179,7 @@ fn what_a_node_held_that_is_cut_off_is_cancelled_and_it_comes_back_without_ghost
 // C4
 #[test]
 fn what_a_node_held_whose_clock_is_set_is_cancelled_and_it_comes_back_without_ghosts() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         rounds(Harm::SetClock, 1);
     });
 }
@@ -230,7 +230,7 @@ fn hold_over_a_bad_network(holds: usize) {
 // C9
 #[test]
 fn a_bad_network_presses_nothing_by_itself() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         hold_over_a_bad_network(2);
     });
 }
@@ -244,7 +244,7 @@ fn a_network_that_loses_packets_and_is_late_presses_nothing_by_itself() {
 // C8
 #[test]
 fn a_hold_at_the_gateway_s_death_is_unknown_to_the_next_gateway() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let mut fault = Fault::new(8);
         fault.await_hold();
         fault.hall.kill_gateway();

@@ -15,7 +15,7 @@ use underfoot_cluster::transport::TransportEnd;
 use zenoh::Wait;
 
 use crate::faults::holding;
-use crate::hall::{AREAS, Boards, Hall, Program};
+use crate::hall::{AREAS, Boards, Hall, Program, STANDS_STILL_MS};
 use crate::lines::{Line, Lines};
 use crate::ports::free_port;
 use crate::steady::while_time_is_kept;
@@ -163,7 +163,7 @@ fn count(said: &[String], words: &str) -> u64 {
 // C5
 #[test]
 fn a_plain_session_of_zenoh_is_shut_out() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let tapped = Tapped::open(EMPTY);
         let recording = tapped.recording();
         for mode in ["client", "peer"] {
@@ -199,7 +199,7 @@ fn a_plain_session_of_zenoh_is_shut_out() {
 // C5
 #[test]
 fn messages_without_the_floor_s_key_hold_nothing() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let mut tapped = Tapped::open(EMPTY);
         let way = tapped.way_in();
         let recording = tapped.recording();
@@ -225,7 +225,7 @@ fn messages_without_the_floor_s_key_hold_nothing() {
 // C5
 #[test]
 fn requests_without_the_floor_s_key_change_nothing_on_a_node() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let mut tapped = Tapped::open(EMPTY);
         // The node has connected to the recorder by itself.
         let mut forger = AuthSession::new(Role::Gateway, &OTHER, 77, 8);
@@ -263,7 +263,7 @@ fn requests_without_the_floor_s_key_change_nothing_on_a_node() {
 // C6
 #[test]
 fn a_recording_from_before_a_restart_holds_nothing() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let press = r#"Scenario(title: "One hold", steps: [Wait(ms: 1500), Enter(from: South, at: (6.1, 2.2)),
         Wait(ms: 500), Press(widget: "drive", force_n: 110, hold_ms: 2500), Leave(to: South), Wait(ms: 60000)])"#;
         let mut tapped = Tapped::open(press);
@@ -315,7 +315,7 @@ fn a_recording_from_before_a_restart_holds_nothing() {
 // C6
 #[test]
 fn a_message_that_is_repeated_at_once_counts_once() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let mut tapped = Tapped::open(EMPTY);
         let way = tapped.way_in();
         send(&way, tapped.recording());
@@ -329,7 +329,7 @@ fn a_message_that_is_repeated_at_once_counts_once() {
 // C5
 #[test]
 fn a_forger_changes_no_event_of_a_foot() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let mut tapped = Tapped::open(&holding(2));
         let way = tapped.way_in();
         let is_over = Arc::<Mutex<bool>>::default();
@@ -405,7 +405,7 @@ fn now(started: Instant) -> units::Instant {
 // C7
 #[test]
 fn a_node_of_another_version_is_refused_by_name() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let mut hall = Hall::open();
         let impostor = Impostor::new(&hall, "se");
         let other = NodeMessage {
@@ -440,7 +440,7 @@ fn count_refused(said: &[String]) -> u64 {
 // C10
 #[test]
 fn of_two_computers_that_serve_one_area_neither_is_believed() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let tapped = Tapped::open(EMPTY);
         let hall = &tapped.hall;
         let from = hall.lines.len();
@@ -466,7 +466,7 @@ fn of_two_computers_that_serve_one_area_neither_is_believed() {
 // C5
 #[test]
 fn a_hold_without_its_own_press_is_refused_also_from_a_node() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let mut hall = Hall::open();
         let impostor = Impostor::new(&hall, "se");
         let idle = NodeMessage {

@@ -15,7 +15,7 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::runtime::Session;
 use underfoot::schema::{self, Kinds};
-use underfoot::sink::{EventSink, JsonSink, Rank, Report, claim_priority};
+use underfoot::sink::{EventSink, JsonSink, Rank, RealTime, Report};
 use underfoot::source::{SensorSource, SourceError, UdpSource};
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, WidgetId};
@@ -27,6 +27,7 @@ use crate::lines::Lines;
 use crate::link::Link;
 use crate::netns::Namespaces;
 use crate::ports::free_port;
+use crate::steady::note_overload;
 
 /// Four areas of 6 x 6 tiles; their borders are at 6 tiles either way. Each has three boards of 6 x 2 tiles: few,
 /// since one machine does the work of six here.
@@ -68,6 +69,9 @@ pub(crate) const LAYOUT: &str = r#"Layout(
 
 /// Seed of the simulated floor.
 const SEED: u64 = 1;
+
+/// Time (ms) for which a machine stands still if it may take the floor from a program, which takes 100 ms.
+pub(crate) const STANDS_STILL_MS: u64 = 50;
 
 /// The areas' names.
 pub(crate) const AREAS: [&str; 4] = ["sw", "se", "nw", "ne"];
@@ -127,6 +131,9 @@ impl Program {
         thread::spawn(move || {
             chatter.lines().map_while(Result::ok).for_each(|line| {
                 println!("{name}: {line}");
+                if line.contains("gives up its real-time priority") {
+                    note_overload();
+                }
                 said.lock().unwrap().push(line);
             });
         });
@@ -439,8 +446,12 @@ impl Boards {
         let until = Arc::clone(&stop);
         let thread = thread::spawn(move || {
             // Boards are punctual.
-            claim_priority(Rank::Sensing);
+            let mut realtime = RealTime::claim(Rank::Sensing);
             while !until.load(Ordering::Relaxed) {
+                realtime.look();
+                if realtime.given_up() > 0 {
+                    note_overload();
+                }
                 match source.next(Duration::from_millis(10)) {
                     Ok(Some(packet)) => {
                         let datagram = encoder.encode(&packet).unwrap();

@@ -11,7 +11,7 @@ use underfoot::sense::Quality;
 use underfoot::source::{ForwardCounters, UdpSource};
 use underfoot::wire::LinkState;
 
-use crate::hall::{AREAS, Boards, Hall, layout, listening, script};
+use crate::hall::{AREAS, Boards, Hall, STANDS_STILL_MS, layout, listening, script};
 use crate::steady::while_time_is_kept;
 
 /// One computer of the hall, in this process.
@@ -50,7 +50,7 @@ const EMPTY: &str = r#"Scenario(title: "Empty", steps: [Wait(ms: 20000)])"#;
 
 #[test]
 fn what_a_neighbour_forwards_is_sensed_and_its_death_marks_those_tiles_alone() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let floor = listening();
         let (east, _) = serve(&floor, "se");
         let (west, forwarded) = serve(&floor, "sw");
@@ -79,7 +79,7 @@ fn what_a_neighbour_forwards_is_sensed_and_its_death_marks_those_tiles_alone() {
 
 #[test]
 fn a_board_that_sends_to_both_is_sensed_once() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let floor = listening();
         let (east, _) = serve(&floor, "se");
         let (_west, _) = serve(&floor, "sw");
@@ -95,7 +95,7 @@ fn a_board_that_sends_to_both_is_sensed_once() {
 
 #[test]
 fn a_control_works_while_the_neighbour_that_senses_the_other_half_of_it_is_dead() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         let hall = Hall::open();
         // No node serves the south-west, which is near the border.
         let _nodes: Vec<_> = AREAS.iter().filter(|area| **area != "sw").map(|area| hall.node(area)).collect();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use underfoot_cluster::auth::Key;
 
-use crate::hall::{Hall, Program};
+use crate::hall::{Hall, Program, STANDS_STILL_MS};
 use crate::steady::while_time_is_kept;
 
 const FLOOR: &str = r#"Floor(
@@ -95,7 +95,7 @@ fn a_key_that_is_named_and_missing_is_not_made() {
 
 #[test]
 fn computers_that_are_one_share_a_key_beside_the_floor_file() {
-    while_time_is_kept(|| {
+    while_time_is_kept(STANDS_STILL_MS, || {
         // Namespaces count as several computers.
         if std::env::var_os("UNDERFOOT_NETNS").is_some() {
             return;

@@ -3,6 +3,8 @@
 
 #[path = "../../../../tests/support/ports.rs"]
 mod ports;
+#[path = "../../../../tests/support/steady.rs"]
+mod steady;
 #[path = "../../../../tests/support/units.rs"]
 mod unit_files;
 
@@ -21,5 +23,4 @@ mod netns;
 mod offline;
 mod same;
 mod soak;
-mod steady;
 mod units;

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::hall::{AREAS, Hall, Program, say};
+use crate::hall::{AREAS, Hall, Program, STANDS_STILL_MS, say};
 use crate::lines::Line;
 use crate::steady::while_time_is_kept;
 
@@ -282,12 +282,12 @@ fn walk_about(rounds: usize, is_exact: bool) {
 
 #[test]
 fn events_of_four_people_who_cross_all_borders_are_those_of_one_computer() {
-    while_time_is_kept(|| walk_about(1, false));
+    while_time_is_kept(STANDS_STILL_MS, || walk_about(1, false));
 }
 
 /// With `UNDERFOOT_NETNS`, each node runs in a network namespace of its own.
 #[test]
 #[ignore = "two minutes in real time"]
 fn the_same_for_two_minutes_with_names_places_and_times() {
-    while_time_is_kept(|| walk_about(8, true));
+    while_time_is_kept(STANDS_STILL_MS, || walk_about(8, true));
 }
