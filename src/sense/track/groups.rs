@@ -8,10 +8,10 @@ use glam::DVec2;
 use super::elapsed::Elapsed;
 use super::joint::{Joint, MOST_FEET};
 use super::model::{observe, predict};
-use super::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, THROWN_M};
+use super::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, STRIDE_M, THROWN_M};
 use super::state::{EAST, NORTH, STATES, Track};
 use super::strips::{Strips, centroid_sigma};
-use super::{Cells, Tracker, rivals, stance, touchdown};
+use super::{Cells, Tracker, rivals, soles, stance, touchdown};
 use crate::parallel;
 use crate::sense::centroid::tile::LoadedTile;
 use crate::sense::contact::ContactId;
@@ -70,7 +70,9 @@ impl Tracker {
             let size = groups.len().div_ceil(BATCHES);
             let mut batches: ArrayVec<_, BATCHES> =
                 self.estimators.iter_mut().zip(groups.chunks_mut(size)).collect();
-            let (links, cells) = (&self.links, &self.cells);
+            let (links, cells, near) = (&self.links, &self.cells, &self.near);
+            let is_third =
+                |place| near.distances(place).filter(|&(away, _)| away < STRIDE_M).take(3).count() > 2;
             parallel::for_each_batch(&mut batches, feet, |_, (estimator, groups)| {
                 let mut comparisons = 0;
                 for group in groups.iter_mut() {
@@ -82,7 +84,8 @@ impl Tracker {
                         estimator.estimate(group, links, tiles.list(), cells, elapsed);
                     }
                     let has_time = comparisons < MOST_COMPARISONS;
-                    let took_time = rivals::compare(group, tiles.list(), cells, elapsed, has_time);
+                    let took_time = rivals::compare(group, tiles.list(), cells, elapsed, has_time)
+                        | (has_time && soles::compare(group, tiles, cells, elapsed, is_third));
                     comparisons += usize::from(took_time);
                 }
             });

@@ -12,7 +12,8 @@
 //!    [`model`]) estimates tracks that share tiles; it predicts the force and both moments of each column and row of
 //!    tiles ([`strips`]). A foot put down beside a standing one is placed by the likelihood of each distance
 //!    ([`touchdown`]). Two feet that have landed together stand where two soles fit best ([`sole`], [`pair`],
-//!    [`stance`]). Where a foot strays, rival explanations compete with the filter's ([`rivals`]).
+//!    [`stance`]). Where a foot strays, rival explanations compete with the filter's ([`rivals`]); where a touchdown
+//!    fits badly, two soles do ([`soles`]).
 //! 4. **Delete or rest** ([`delete`], [`dormant`]): a foot whose place is proven empty is deleted. A foot that
 //!    carries so little that the other one explains all of the load stays as an ambiguous contact with its identity
 //!    until its load returns or it is proven to have left.
@@ -44,6 +45,7 @@ mod rivals;
 mod sharing;
 mod smoothed;
 mod sole;
+mod soles;
 mod stance;
 mod state;
 mod static_fit;

@@ -10,6 +10,7 @@ use super::initiate::CandidateTrack;
 use super::pair::Fitted;
 use super::reach::NOTHING_BORNE;
 use super::rivals::Lead;
+use super::soles::SolesAhead;
 use super::stance::Stance;
 use super::strips::Residual;
 use super::touchdown::Touchdown;
@@ -99,6 +100,8 @@ pub(super) struct Doubt {
     pub contested_s: f64,
     /// The rival explanation of its group that is ahead of the filter's, if it is the first of the group.
     pub lead: Lead,
+    /// Two soles that were ahead when they were last compared, if it is the first of a group of two.
+    pub soles: Option<SolesAhead>,
     /// Time for which another foot alone has explained the loads (s).
     pub enough_s: f64,
 }

@@ -51,6 +51,18 @@ pub(super) struct Lead {
     waits: bool,
 }
 
+impl Lead {
+    /// Whether two soles may replace the filter's explanation now: it has not just changed, and no further foot is ahead.
+    pub(super) fn leaves_to_soles(&self) -> bool {
+        self.pause == 0 && !matches!(self.rival, Some(Rival::Further(_)))
+    }
+
+    /// Begins a pause, since the explanation has just changed.
+    pub(super) fn pause(&mut self) {
+        *self = Self { pause: PAUSE, ..Self::default() };
+    }
+}
+
 /// Compares the explanations of a group that the filter has just estimated, and changes its feet if a rival has been
 /// ahead for some time. Returns whether that took time; without `has_time`, a group whose turn has come waits for the
 /// next frame.
@@ -112,7 +124,7 @@ fn doubt_light_feet(group: &mut Group<'_>) {
     }
 }
 
-fn may_have_rivals(group: &Group<'_>) -> bool {
+pub(super) fn may_have_rivals(group: &Group<'_>) -> bool {
     let flat = |foot: &&mut Track| {
         foot.age > FLAT_S && !foot.company.beyond_filter && foot.sensors.suppressed_s <= 0.0
     };

@@ -78,6 +78,17 @@ impl LoadsAround {
         Self { corner: first.as_dvec2() * cells.pitch, pitch: cells.pitch, tiles: around }
     }
 
+    /// The loads of `soles` on the nine tiles around `centre`.
+    #[cfg(test)]
+    pub(super) fn pressed_by(soles: &[Sole], centre: DVec2, pitch: DVec2) -> Self {
+        let corner = (cell_of(centre, pitch) - 1).as_dvec2() * pitch;
+        let mut around = Self { corner, pitch, tiles: [Load::default(); AROUND] };
+        let mut tiles = around.tiles;
+        soles.iter().for_each(|sole| around.press(sole, &mut tiles));
+        around.tiles = tiles.map(|load| Load { variance: NOISE_N * NOISE_N, ..load });
+        around
+    }
+
     /// Log likelihood of the loads if these soles press, up to a constant.
     pub(super) fn log_likelihood(&self, soles: &[Sole]) -> f64 {
         let mut expected = [Load::default(); AROUND];

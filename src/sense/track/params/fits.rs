@@ -200,6 +200,60 @@ pub(in crate::sense::track) mod static_fit {
     pub(in crate::sense::track) const ASIDE: f64 = 0.4;
 }
 
+/// Two soles for a touchdown whose loads fit badly ([`soles`](super::super::soles)).
+pub(in crate::sense::track) mod soles {
+    /// Interval between two comparisons (s) (our choice).
+    pub(in crate::sense::track) const EVERY_S: f64 = 0.02;
+
+    /// Misfit of a touchdown above which soles are compared. Recorded weight shifts have 2.4 and 2.9 % of wrong places with
+    /// this and without soles, 4 % with 1.8, and 12 % if every foot that has strayed is compared.
+    pub(in crate::sense::track) const MISFIT: f64 = 2.5;
+
+    /// Headings of the grid in half a turn, shares of the load on the heels, distances of the feet (m), and shares of the
+    /// load on one of them.
+    pub(in crate::sense::track) const HEADINGS: usize = 6;
+
+    pub(in crate::sense::track) const ON_HEEL: [f64; 2] = [0.3, 0.7];
+
+    pub(in crate::sense::track) const APART_M: [f64; 4] = [0.12, 0.19, 0.27, 0.37];
+
+    pub(in crate::sense::track) const SHARES: [f64; 5] = [0.12, 0.3, 0.5, 0.7, 0.88];
+
+    /// Shares of the load on the heels tried with both feet at their places.
+    pub(in crate::sense::track) const ON_HEEL_HERE: [f64; 5] = [0.05, 0.25, 0.45, 0.65, 0.9];
+
+    /// Number of stances of the grid that are improved (one alone finds fewer pivots), and most steps of each.
+    pub(in crate::sense::track) const STARTS: usize = 4;
+
+    pub(in crate::sense::track) const ROUNDS: usize = 12;
+
+    /// Steps of the heading (rad), the share on the heels, the distances aside and ahead (m) and the share of one foot.
+    pub(in crate::sense::track) const STEPS: [f64; 5] = [0.13, 0.1, 0.02, 0.03, 0.05];
+
+    /// Distance from its present place within which a foot counts as there (m) (our choice).
+    pub(in crate::sense::track) const SETTLE_M: f64 = 0.04;
+
+    /// Standard deviation of the way of a foot from its rest point (m) (our choice).
+    pub(in crate::sense::track) const ROLLED_M: f64 = 0.08;
+
+    /// Difference of scores from which on a stance is ahead, and the number of successive comparisons in which it must be
+    /// (our choice): a knee that lands has shown its place until then.
+    pub(in crate::sense::track) const AHEAD: f64 = 4.0;
+
+    pub(in crate::sense::track) const TIMES: u8 = 3;
+
+    /// Least share of the load on the lighter sole, and least distance of both (m): less is one foot that rolls.
+    pub(in crate::sense::track) const LEAST_SHARE: f64 = 0.25;
+
+    pub(in crate::sense::track) const LEAST_APART_M: f64 = 0.16;
+
+    /// Difference of the ways in both orders from which on it is clear which foot is which (m) (our choice).
+    pub(in crate::sense::track) const CLEAR_M: f64 = 0.05;
+
+    /// Distance up to which two comparisons have found the same places (m) (our choice).
+    pub(in crate::sense::track) const SAME_M: f64 = 0.05;
+}
+
 /// Rival explanations of a group's loads.
 pub(in crate::sense::track) mod rivals {
     /// Interval between two comparisons (s) (our choice).

@@ -22,6 +22,6 @@ mod fits;
 mod foot;
 mod tracks;
 
-pub(super) use fits::{model, pair, refits, rivals, sole, stance, static_fit, touchdown};
+pub(super) use fits::{model, pair, refits, rivals, sole, soles, stance, static_fit, touchdown};
 pub(super) use foot::{output, residual, smoothed, state, stillness};
 pub(super) use tracks::{associate, delete, dormant, explanation, initiate, reach, tracker};
