@@ -306,7 +306,7 @@ fn report(counters: &LinkCounters, dropped: u64) {
     }
     if counters.overruns > 0 {
         errln!(
-            "The sensing thread gave up its real-time priority {} times, since the machine is too slow.",
+            "Since the machine is too slow, the sensing thread gave up its real-time priority (times: {}).",
             counters.overruns
         );
     }
