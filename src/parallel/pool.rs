@@ -49,11 +49,6 @@ impl ThreadPool {
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.pool.install(work)
     }
-
-    /// Runs `work` once on each thread of the pool, such as a request for a priority.
-    pub(crate) fn for_each_thread(&self, work: impl Fn() + Sync) {
-        self.pool.broadcast(|_| work());
-    }
 }
 
 /// Calls `work` on each of `items` with its position.

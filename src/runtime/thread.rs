@@ -19,8 +19,6 @@ use crate::layout::Layout;
 use crate::parallel::ThreadPool;
 use crate::sense::Method;
 use crate::serve::{FloorCommand, Neighbours, Server};
-#[cfg(feature = "threads")]
-use crate::sink::claim_priority;
 use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, RealTime, SinkError, WaitFreeReceiver};
 use crate::source::FloorInput;
 use crate::units::{HostClock, Instant};
@@ -77,9 +75,6 @@ pub(super) fn run(
 ) {
     #[cfg(feature = "threads")]
     if let Some(pool) = plan.pool.take() {
-        if plan.realtime {
-            pool.for_each_thread(|| _ = claim_priority(Rank::Sensing));
-        }
         return pool.run(|| run_here(plan, watchers, ready));
     }
     run_here(plan, watchers, ready);

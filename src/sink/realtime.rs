@@ -35,9 +35,11 @@ pub struct RealTime {
 }
 
 impl RealTime {
-    /// Asks for real-time priority of the calling thread, as [`claim_priority`] does.
+    /// Asks for real-time priority of the calling thread, as [`claim_priority`] does, and of the threads of its pool, if
+    /// it is on one.
     #[must_use]
     pub fn claim(rank: Rank) -> Self {
+        on_each_thread(|| _ = claim_priority(rank));
         let is_held = (claim_priority(rank) == Priority::RealTime).then_some(true);
         Self { rank, is_held, last: None, rested: 0, given_up: 0 }
     }

@@ -106,7 +106,10 @@ pub(super) fn compare(
         }
     }
     let wins = lead.times >= TIMES;
-    group[0].doubt.lead = if wins { Lead { pause: PAUSE, ..Lead::default() } } else { lead };
+    if wins {
+        lead.pause();
+    }
+    group[0].doubt.lead = lead;
     if let Some((rival, fit)) = best.filter(|_| wins) {
         adopt(group, rival, &fit.forces, list);
     }
